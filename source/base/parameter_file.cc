@@ -120,6 +120,18 @@ namespace Voussoir
         throw UserError(place + ": \"" + entry_of(path) +
                         "\" is followed by two \"=\"; remove one.");
     }
+
+
+    /** @param first where it is set before, with a preposition */
+    [[noreturn]] void
+    refuse_second(const std::string &path,
+                  const std::string &place,
+                  const std::string &first)
+    {
+      throw UserError(place + ": \"" + entry_of(path) +
+                      "\" is set a second time (first " + first +
+                      "); keep one of the two.");
+    }
   } // namespace
 
 
@@ -141,15 +153,15 @@ namespace Voussoir
   {
     read(filename, {});
     change(changes);
-    std::map<std::string, std::string> set; // and its place
+    std::map<std::string, std::string> set; // by path
     for (const std::string &item : changes)
       {
         const std::string path =
           join_path(split_list(item.substr(0, item.find('=')), '/'));
         if (const auto first = set.emplace(path, item); !first.second)
-          throw UserError("--set \"" + item + "\": \"" + entry_of(path) +
-                          "\" is set a second time (first by --set \"" +
-                          first.first->second + "\"); keep one of the two.");
+          refuse_second(path,
+                        "--set \"" + item + "\"",
+                        "by --set \"" + first.first->second + "\"");
       }
   }
 
@@ -273,9 +285,7 @@ namespace Voussoir
                 continue;
               }
             if (values.count(path) > 0)
-              throw UserError(place + ": \"" + entry_of(path) +
-                              "\" is set a second time (first in " +
-                              values[path].place + "); keep one of the two.");
+              refuse_second(path, place, "in " + values[path].place);
             values[path] = {trim(rest.substr(equals + 1)), place};
             refuse_second_equals(path, values[path].text, place);
           }

@@ -14,8 +14,9 @@ namespace Voussoir
     }
 
 
-    // Shear per pressure with which a point that closes regains cohesion, and
-    // the factor on this ratio from one multiplier to the next.
+    // Shear per pressure with which a point that closes regains cohesion; and
+    // the factor on the way from one multiplier to the next, of cohesion and of
+    // openings.
     constexpr double cohesion_per_pressure = 10., over_relaxation = 10.;
 
 
@@ -291,13 +292,13 @@ namespace Voussoir
           {
             // of this iterate alone; a crack that closes would follow its
             // stiff unloading line in small steps
-            InterfaceHistory now    = history_at(k);
-            const double     closed = point.history.opening - now.opening;
+            const double opening = point.history.opening;
+            point.history        = history_at(k);
+            const double closed  = opening - point.history.opening;
             if (closed > 0.)
-              now.opening =
+              point.history.opening =
                 std::max(before[k].history.opening,
-                         now.opening - (over_relaxation - 1.) * closed);
-            point.history = now;
+                         opening - over_relaxation * closed);
           }
         interfaces.yield_bars(point);
         interfaces.update_limits(point);

@@ -1,10 +1,10 @@
+#include <voussoir/base/box_of_ranks.h>
 #include <voussoir/base/error.h>
 #include <voussoir/base/text.h>
 #include <voussoir/driver/model_checks.h>
 #include <voussoir/mesh/interfaces.h>
 #include <voussoir/mesh/mesh_parts.h>
 
-#include <limits>
 #include <set>
 
 namespace Voussoir
@@ -84,16 +84,12 @@ namespace Voussoir
   void
   check_levels(const Case &parameters, const Reservoir *reservoir, Log &log)
   {
-    double bottom = std::numeric_limits<double>::max(), top = -bottom;
+    BoxOfRanks box; // of the compressible water
     if (reservoir != nullptr)
       {
         for (const Point<3> &position : reservoir->space.node_positions)
-          {
-            bottom = std::min(bottom, position[2]);
-            top    = std::max(top, position[2]);
-          }
-        bottom = Utilities::MPI::min(bottom, log.communicator());
-        top    = Utilities::MPI::max(top, log.communicator());
+          box.add(position);
+        box.join(log.communicator());
       }
     const AddedMassParameters &mass          = parameters.reservoir.added_mass;
     const std::string          default_faces = AddedMassParameters().face_sets;
@@ -112,13 +108,14 @@ namespace Voussoir
         // a generated mesh moves the surface by up to a row of cells
         if (type == "water" && reservoir != nullptr &&
             faces == split_list(default_faces) &&
-            std::abs(level - top) > 0.1 * (top - bottom))
+            std::abs(level - box.upper[2]) >
+              0.1 * (box.upper[2] - box.lower[2]))
           log.warn("\"Level\" in section \"",
                    section,
                    "\" is ",
                    level,
                    " m, but the water of \"Reservoir\" reaches up to ",
-                   top,
+                   box.upper[2],
                    " m");
         if (type == "water" &&
             parameters.reservoir.model == ReservoirModel::added_mass &&

@@ -67,17 +67,11 @@ namespace Voussoir
                 values = material.outputs(history.read(place, q).data(), band);
                 if (cracks)
                   {
-                    const CrackOpening opening(solid.discretization,
-                                               material,
-                                               history,
-                                               place,
-                                               solid.discretization.points(m),
-                                               q,
-                                               largest);
-                    values[largest] = opening.largest();
-                    values.push_back(opening.now());
-                    for (const std::size_t i : {largest, values.size() - 1})
-                      values[i] *= 1e3;
+                    const CrackOpening opening(
+                      solid, m, history, place, q, largest);
+                    values.push_back(1e3 * opening.now());
+                    if (CrackOpening::is_of_cell(solid))
+                      values[largest] = 1e3 * opening.largest();
                   }
               }
             visit(cell, band, band > 0. ? values : nothing);
@@ -90,13 +84,14 @@ namespace Voussoir
   double
   CrackOpening::of_cell(const OfPoint &of_point) const
   {
-    if (discretization.degree == 1)
+    if (!is_of_cell(solid))
       return of_point(q);
-    double sum = 0.;
+    const Quadrature<3> &points = solid.discretization.points(material);
+    double               sum    = 0.;
     for (unsigned int i = 0; i < points.size(); ++i)
       if (history.band(place, i) > 0.)
         sum += points.weight(i) * of_point(i);
-    return sum / discretization.crack_share;
+    return sum / solid.discretization.crack_share;
   }
 
 
@@ -120,8 +115,9 @@ namespace Voussoir
     const ActivePoint &point = history.active_point(place.batch, q);
     const Lanes across       = point.normal * (point.law_strain * point.normal),
                 traction     = point.normal * (point.stress * point.normal);
-    const ElasticConstants elastic       = material.elastic_constants();
-    const double           strain_across = across[place.lane];
+    const ElasticConstants elastic =
+      solid.materials[material]->elastic_constants();
+    const double strain_across = across[place.lane];
     if (!(strain_across > 0.) ||
         traction[place.lane] < -1e-6 * elastic.young_modulus * strain_across)
       return 0.;
@@ -140,8 +136,9 @@ namespace Voussoir
   double
   CrackOpening::largest_at(const unsigned int q) const
   {
-    return 1e-3 * material.outputs(history.read(place, q).data(),
-                                   history.band(place, q))[number];
+    return 1e-3 *
+           solid.materials[material]->outputs(history.read(place, q).data(),
+                                              history.band(place, q))[number];
   }
 
 
@@ -198,33 +195,22 @@ namespace Voussoir
                                           const double,
                                           const CrackOpening &)> &visit)
   {
-    const Material *known  = nullptr;
-    std::size_t     number = 0;
-    for_each_active(run,
-                    [&](const unsigned int          m,
-                        const PointHistory         &history,
-                        const Discretization::Cell &cell,
-                        const PointHistory::Place  &place,
-                        const unsigned int          q,
-                        const double                band) {
-                      const Material       &material = *run.solid.materials[m];
-                      const Discretization &discretization =
-                        run.solid.discretization;
-                      if (&material != known)
-                        number =
-                          output_number(material, OutputName::largest_opening);
-                      known = &material;
-                      visit(cell,
-                            q,
-                            band,
-                            {discretization,
-                             material,
-                             history,
-                             place,
-                             discretization.points(m),
-                             q,
-                             number});
-                    });
+    unsigned int known  = numbers::invalid_unsigned_int;
+    std::size_t  number = 0;
+    for_each_active(
+      run,
+      [&](const unsigned int          m,
+          const PointHistory         &history,
+          const Discretization::Cell &cell,
+          const PointHistory::Place  &place,
+          const unsigned int          q,
+          const double                band) {
+        if (m != known)
+          number =
+            output_number(*run.solid.materials[m], OutputName::largest_opening);
+        known = m;
+        visit(cell, q, band, {run.solid, m, history, place, q, number});
+      });
   }
 
 
@@ -232,7 +218,6 @@ namespace Voussoir
   memory_of_cells(const Solid &solid, const MaterialMemory &memory)
   {
     const auto n          = solid.grid().triangulation().n_active_cells();
-    const bool of_cell    = solid.discretization.degree > 1; // see CrackOpening
     const auto is_opening = [](const std::string &name) {
       return name == opening_now || name == OutputName::largest_opening;
     };
@@ -246,21 +231,20 @@ namespace Voussoir
             result[name].reinit(n);
         if (history == nullptr)
           continue;
-        for_each_point(solid,
-                       m,
-                       *history,
-                       [&](const Discretization::Cell &cell,
-                           const double                band,
-                           const std::vector<double>  &outputs) {
-                         for (unsigned int i = 0; band > 0. && i < names.size();
-                              ++i)
-                           if (float &value =
-                                 result[names[i]][cell->active_cell_index()];
-                               of_cell && is_opening(names[i]))
-                             value = std::max<float>(value, outputs[i]);
-                           else
-                             value += outputs[i] / history->n_points();
-                       });
+        for_each_point(
+          solid,
+          m,
+          *history,
+          [&](const Discretization::Cell &cell,
+              const double                band,
+              const std::vector<double>  &outputs) {
+            for (unsigned int i = 0; band > 0. && i < names.size(); ++i)
+              if (float &value = result[names[i]][cell->active_cell_index()];
+                  CrackOpening::is_of_cell(solid) && is_opening(names[i]))
+                value = std::max<float>(value, outputs[i]);
+              else
+                value += outputs[i] / history->n_points();
+          });
       }
     return result;
   }

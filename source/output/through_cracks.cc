@@ -203,7 +203,7 @@ namespace Voussoir
       {
         const unsigned int first      = 8 * paths->number_of(cell);
         const auto        &share      = shares_of(cell)[q];
-        const bool         is_of_cell = run().solid.discretization.degree > 1;
+        const bool         is_of_cell = CrackOpening::is_of_cell(run().solid);
         for (unsigned int corner = 0; corner < 8; ++corner)
           if (double &eighth = eighths[first + corner]; !is_of_cell)
             eighth += 1e3 * share[corner] * opening;

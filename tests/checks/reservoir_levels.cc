@@ -1,9 +1,7 @@
 #include <voussoir/base/text.h>
 #include <voussoir/driver/case.h>
+#include <voussoir/mesh/mesh_geometry.h>
 
-#include <deal.II/base/geometry_info.h>
-
-#include <map>
 #include <set>
 
 #include "check.h"
@@ -38,31 +36,25 @@ namespace Voussoir
             const CoarseMesh mesh =
               make_case(file.with({"Mesh/arch dam/Reservoir level=" + level}))
                 ->generator->generate();
-            std::map<std::set<unsigned int>, unsigned int> n_cells;
-            const auto corners = [&](const unsigned int cell,
-                                     const unsigned int face) {
-              std::set<unsigned int> vertices;
-              for (unsigned int v = 0; v < 4; ++v)
-                vertices.insert(
-                  mesh.cells[cell]
-                            [GeometryInfo<3>::face_to_cell_vertices(face, v)]);
-              return vertices;
-            };
-            for (unsigned int cell = 0; cell < mesh.cells.size(); ++cell)
-              for (unsigned int face = 0; face < 6; ++face)
-                ++n_cells[corners(cell, face)];
-            std::set<std::set<unsigned int>> named;
+            const auto                  &water = mesh.cell_sets.at("reservoir");
+            const std::set<unsigned int> is_water(water.begin(), water.end());
+            std::set<std::pair<unsigned int, unsigned int>> named;
             for (const std::string name : {"water surface", "reservoir end"})
               for (const CoarseMesh::Face &face : mesh.face_sets.at(name))
-                named.insert(corners(face.cell, face.face));
+                named.emplace(face.cell, face.face);
+            const std::vector<SortedFace> faces = sorted_faces(mesh);
+            const auto                    same  = [&faces](const std::size_t i,
+                                       const std::size_t j) {
+              return j < faces.size() && faces[i].vertices == faces[j].vertices;
+            };
             unsigned int n_faces = 0, n_unnamed = 0;
-            for (const unsigned int cell : mesh.cell_sets.at("reservoir"))
-              for (unsigned int face = 0; face < 6; ++face)
+            for (std::size_t i = 0; i < faces.size(); ++i)
+              if (const auto [cell, face] = faces[i].face;
+                  is_water.count(cell) > 0 && !same(i, i - 1) &&
+                  !same(i, i + 1))
                 {
-                  const auto vertices = corners(cell, face);
-                  n_faces += n_cells.at(vertices) == 1;
-                  n_unnamed +=
-                    n_cells.at(vertices) == 1 && named.count(vertices) == 0;
+                  ++n_faces;
+                  n_unnamed += named.count({cell, face}) == 0;
                 }
             verdicts.is_true(level + " m: the water has outer faces",
                              n_faces > 0);

@@ -86,7 +86,8 @@ namespace Voussoir
     approach(const double aim);
 
     /** Steps until the equilibrium under these multipliers is found to an
-     *  accuracy; at least one, unless the aim is met already. */
+     *  accuracy; at least one, unless a tenth of the aim is met already, as
+     *  forces of contact may be small beside the loads. */
     void
     balance(const double accuracy, const double aim);
 

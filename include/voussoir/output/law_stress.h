@@ -21,11 +21,12 @@ namespace Voussoir
               const dealii::Point<3>     &unit);
 
     /** Total stress [Pa].
-     *  @param elastic_strain that of Material::elastic_strain */
+     *  @param elastic_strain see there */
     dealii::SymmetricTensor<2, 3>
     operator()(const dealii::SymmetricTensor<2, 3> &elastic_strain) const;
 
-    /** Material::elastic_strain. */
+    /** Material::elastic_strain; but where the law of the static state limits
+     *  the stress before the earthquake, that of the limited stress. */
     dealii::SymmetricTensor<2, 3>
     elastic_strain(const dealii::SymmetricTensor<2, 3> &filtered,
                    const dealii::SymmetricTensor<2, 3> &initial_strain,

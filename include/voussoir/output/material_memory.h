@@ -30,21 +30,26 @@ namespace Voussoir
   public:
     /** @param number of the largest opening among the outputs of the material
      */
-    CrackOpening(const Discretization        &discretization,
-                 const Material              &material,
-                 const PointHistory          &history,
-                 const PointHistory::Place   &place,
-                 const dealii::Quadrature<3> &points,
-                 const unsigned int           q,
-                 const std::size_t            number)
-      : discretization(discretization)
+    CrackOpening(const Solid               &solid,
+                 const unsigned int         material,
+                 const PointHistory        &history,
+                 const PointHistory::Place &place,
+                 const unsigned int         q,
+                 const std::size_t          number)
+      : solid(solid)
       , material(material)
       , history(history)
       , place(place)
-      , points(points)
       , q(q)
       , number(number)
     {}
+
+    /** Whether all points of a cell have the opening of the cell. */
+    static bool
+    is_of_cell(const Solid &solid)
+    {
+      return solid.discretization.degree > 1;
+    }
 
     /** At the last step [m]: the band times the largest principal value of e_in
      *  = e - C^-1 : sigma or the strain across the crack, n . e . n, if that is
@@ -70,13 +75,12 @@ namespace Voussoir
     double
     largest_at(const unsigned int point) const;
 
-    const Discretization        &discretization;
-    const Material              &material;
-    const PointHistory          &history;
-    const PointHistory::Place   &place;
-    const dealii::Quadrature<3> &points;
-    unsigned int                 q;
-    std::size_t                  number;
+    const Solid               &solid;
+    unsigned int               material; // its number
+    const PointHistory        &history;
+    const PointHistory::Place &place;
+    unsigned int               q;
+    std::size_t                number;
   };
 
   /** Visits the points of this rank's cells that have left the elastic range,

@@ -169,21 +169,24 @@ namespace Voussoir
 
   namespace
   {
-    void
+    /** Returns the warnings. */
+    std::vector<std::string>
     report_ties(const ModalSystem &system, Log &log)
     {
       const ModalSystem::TiedPoints &points = system.tied_points();
       if (points.all == 0)
-        return;
+        return {};
       log.line("Modes: ",
                points.tied,
                " of ",
                points.all,
                " points of the interfaces are tied");
-      if (points.bars)
-        log.warn("the natural modes are those without the bars across open "
-                 "interfaces; set \"Interfaces = all tied\" in section "
-                 "\"Modes\" to include them");
+      if (!points.bars)
+        return {};
+      return {
+        "the natural modes are those without the bars across open "
+        "interfaces; set \"Interfaces = all tied\" in section \"Modes\" to "
+        "include them"};
     }
 
 
@@ -219,7 +222,8 @@ namespace Voussoir
   {
     const Timer clock;
     ModalSystem system(model, parameters);
-    report_ties(system, log);
+    Modes       modes;
+    modes.warnings = report_ties(system, log);
     system.set_up();
     auto         start = system.start(block_size(system, parameters.number));
     const Vector orientation = system.solid_part(start[0]);
@@ -249,7 +253,6 @@ namespace Voussoir
                   parameters.number,
                   parameters.tolerance);
 
-    Modes   modes;
     Momenta momenta;
     for (unsigned int d = 0; d < 3; ++d)
       {

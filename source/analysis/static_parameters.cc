@@ -116,6 +116,11 @@ namespace Voussoir
     std::vector<std::string> known;
     for (const auto &load : loads)
       known.push_back(load.first);
+    for (const std::string &stage : Utilities::split_string_list(stages, ';'))
+      if (split_list(stage.substr(stage.find(':') + 1)).empty())
+        throw UserError("\"Stages = " + stages +
+                        "\" in section \"Static state\" has a stage without a "
+                        "load; name its loads, or remove its semicolon.");
     std::set<std::string> staged, titles;
     for (const auto &stage : stage_names())
       for (const std::string &name : stage)

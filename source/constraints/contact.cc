@@ -199,17 +199,12 @@ namespace Voussoir
       {
         ContactPoint &point  = interfaces.points[k];
         const Slid   &before = before_approach[k];
-        const bool    open   = point.status == ContactStatus::open;
-        const double  tip    = point.history.tip;
-        point.history        = before.history;
-        point.history.tip    = tip;
-        if (open)
-          point.history.opening = std::max(point.history.opening, point.gap[0]);
-        // of a bond at the beginning, which may have broken since
-        if (!open || interfaces.surfaces[point.surface]
-                         .law->strength(before.history)
-                         .bond > 0.)
-          point.history.slip += (point.stick_point - before.stick_point).norm();
+        point.history =
+          point.history_since(before.history,
+                              interfaces.surfaces[point.surface]
+                                  .law->strength(before.history)
+                                  .bond > 0.,
+                              (point.stick_point - before.stick_point).norm());
         point.largest_slip =
           std::max(before.largest_slip, std::hypot(point.gap[1], point.gap[2]));
         interfaces.update_limits(point);

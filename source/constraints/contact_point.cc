@@ -174,6 +174,22 @@ namespace Voussoir
   }
 
 
+  InterfaceHistory
+  ContactPoint::history_since(const InterfaceHistory &before,
+                              const bool              was_bonded,
+                              const double            distance) const
+  {
+    InterfaceHistory result = before;
+    result.tip              = history.tip;
+    const bool open         = status == ContactStatus::open;
+    if (open)
+      result.opening = std::max(result.opening, gap[0]);
+    if (!open || was_bonded)
+      result.slip += distance;
+    return result;
+  }
+
+
   double
   ContactPoint::used_bond() const
   {

@@ -327,20 +327,18 @@ namespace Voussoir
   InterfaceHistory
   StaticContact::history_at(const unsigned int k) const
   {
-    const ContactPoint &point  = interfaces.points[k];
-    const bool          open   = point.status == ContactStatus::open;
-    InterfaceHistory    result = before[k].history;
-    result.tip                 = point.history.tip;
+    const ContactPoint &point = interfaces.points[k];
     if (!point.joined)
-      return result;
-    if (open)
-      result.opening = std::max(result.opening, point.gap[0]);
-    // of a bond at the beginning of the stage, which may have broken since
-    if (point.status != ContactStatus::sticking && !point.limits.locked &&
-        (!open || before[k].limits.bond > 0.))
-      result.slip += std::hypot(point.gap[1] - point.stick_point[0],
-                                point.gap[2] - point.stick_point[1]);
-    return result;
+      return point.history;
+    const bool stays =
+      point.status == ContactStatus::sticking || point.limits.locked;
+    return point.history_since(before[k].history,
+                               before[k].limits.bond > 0.,
+                               stays ?
+                                 0. :
+                                 std::hypot(point.gap[1] - point.stick_point[0],
+                                            point.gap[2] -
+                                              point.stick_point[1]));
   }
 
 

@@ -146,6 +146,13 @@ namespace Voussoir
                           " is empty; give the document of the limit, or "
                           "\"user's\".");
       }
+    if (!criteria.empty() && of_the_run().empty())
+      throw UserError(
+        "None of the criteria in section \"Acceptance\" applies to "
+        "its \"Load cases\", \"" +
+        load_cases +
+        "\"; add the \"Load case\" of one of them, or leave "
+        "\"Load cases\" empty.");
   }
 
 

@@ -35,12 +35,7 @@ namespace Voussoir
              file,
              ", where a run with the same mesh, materials, interfaces, "
              "boundaries and static loads has kept it");
-    StaticState static_state = read_static_state(model, file);
-    if (const auto warnings = static_state.summary.find("warnings");
-        warnings != static_state.summary.end())
-      for (const nlohmann::json &warning : *warnings)
-        log.warn(warning.get<std::string>());
-    return static_state;
+    return read_static_state(model, file);
   }
 
 

@@ -131,11 +131,7 @@ namespace Voussoir
           "each other keeps most of its load; with \"Quadrature = one point "
           "where elastic\" they have eight, and with \"Crack growth = along "
           "planes\", where the class has it, a crack takes this stiffness.");
-    if (std::none_of(materials.begin(),
-                     materials.end(),
-                     [](const Material *material) {
-                       return material->cracks_grow();
-                     }))
+    if (!any_cracks_grow({materials.begin(), materials.end()}))
       return notes;
     const std::vector<Cells> cells = cells_of(grid, materials);
     for (unsigned int m = 0; m < materials.size(); ++m)

@@ -38,6 +38,7 @@ namespace Voussoir
     , contact(contact)
     , log(log)
     , files(folder.checkpoints(), log.communicator())
+    , n_warnings_before(log.warnings().size())
     , by_time(model.parameters.output.checkpoint_time > 0.)
     , schedule(model.parameters.output.checkpoint_time, setup.time_step.length)
   {}
@@ -138,6 +139,13 @@ namespace Voussoir
   }
 
 
+  std::vector<std::string>
+  RunCheckpoints::warnings_of_run() const
+  {
+    return {log.warnings().begin() + n_warnings_before, log.warnings().end()};
+  }
+
+
   bool
   RunCheckpoints::write(State &state, const EnergyBalance &energy) const
   {
@@ -175,7 +183,7 @@ namespace Voussoir
                      {"energy", energy.save()},
                      {"contact", contact ? contact->save() : nlohmann::json()},
                      {"sizes of files", sizes_of_files()},
-                     {"warnings", log.warnings()}},
+                     {"warnings", warnings_of_run()}},
                     content);
       }
     catch (const UserError &error)

@@ -109,6 +109,15 @@ namespace Voussoir
     }
 
 
+    /** Those of a result that may have been stored. */
+    void
+    warn_of(const std::vector<std::string> &warnings, Log &log)
+    {
+      for (const std::string &warning : warnings)
+        log.warn(warning);
+    }
+
+
     StaticState
     kept_or_found(const Model &model, const ResultFolder &folder, Log &log)
     {
@@ -173,7 +182,7 @@ namespace Voussoir
         return StaticState(model);
       try
         {
-          return stored_or_found<StaticState>(
+          StaticState found = stored_or_found<StaticState>(
             model,
             folder,
             "rest.h5",
@@ -185,6 +194,9 @@ namespace Voussoir
               store_static_state(model, static_state, file);
             },
             log);
+          warn_of(found.summary.value("warnings", std::vector<std::string>()),
+                  log);
+          return found;
         }
       catch (const LostEquilibrium &lost)
         {
@@ -204,7 +216,7 @@ namespace Voussoir
     {
       if (model.parameters.modes.number == 0)
         return {};
-      return stored_or_found<Modes>(
+      Modes modes = stored_or_found<Modes>(
         model,
         folder,
         "modes.h5",
@@ -212,6 +224,8 @@ namespace Voussoir
         [&] { return find_modes(model, static_state, log); },
         store_modes,
         log);
+      warn_of(modes.warnings, log);
+      return modes;
     }
   } // namespace
 

@@ -128,6 +128,7 @@ namespace Voussoir
     write_state(file,
                 {{"moving mass", numbers_of(modes.moving_mass)},
                  {"measured shapes", modes.measured_shapes},
+                 {"warnings", modes.warnings},
                  {"modes", list}},
                 content_of(model, copy),
                 model.grid.communicator());
@@ -142,6 +143,7 @@ namespace Voussoir
     Modes                modes;
     modes.moving_mass     = vector_of(header.at("moving mass"));
     modes.measured_shapes = header.value("measured shapes", nlohmann::json());
+    modes.warnings = header.value("warnings", std::vector<std::string>());
     for (const nlohmann::json &mode : header.at("modes"))
       modes.list.push_back({mode.at(0),
                             model.solid.discretization.create_vector(),

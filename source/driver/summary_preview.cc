@@ -63,7 +63,8 @@ namespace Voussoir
         summary.march->static_state = outline_of(run.model);
       if (const unsigned int n = run.model.parameters.modes.number; n > 0)
         {
-          Modes modes{std::vector<Mode>(n), {}, {}};
+          Modes modes;
+          modes.list.resize(n);
           for (const MeasuredShape &shape :
                measured_shapes(run.model.parameters.modes))
             modes.measured_shapes[shape.name] = nearest_mode(1, 0., 0.);

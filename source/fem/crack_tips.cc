@@ -82,10 +82,7 @@ namespace Voussoir
   CrackTips::take_over(const std::vector<const CellKernel *> &of_static_state,
                        MaterialMemory                        &memory) const
   {
-    if (memory.empty() ||
-        std::none_of(kernels.begin(), kernels.end(), [](const auto *kernel) {
-          return kernel->cracks_grow();
-        }))
+    if (memory.empty() || !any_cracks_grow(kernels))
       return;
     const std::vector<Notch> notches = notches_of_cells(discretization.grid);
     for (unsigned int m = 0; m < kernels.size(); ++m)

@@ -206,15 +206,21 @@ namespace Voussoir
   }
 
 
+  bool
+  any_cracks_grow(const std::vector<const CellKernel *> &kernels)
+  {
+    return std::any_of(kernels.begin(), kernels.end(), [](const auto *kernel) {
+      return kernel->cracks_grow();
+    });
+  }
+
+
   void
   weaken_at_notches(const Discretization                  &discretization,
                     const std::vector<const CellKernel *> &kernels,
                     MaterialMemory                        &memory)
   {
-    if (memory.empty() ||
-        std::none_of(kernels.begin(), kernels.end(), [](const auto *kernel) {
-          return kernel->cracks_grow();
-        }))
+    if (memory.empty() || !any_cracks_grow(kernels))
       return;
     const std::vector<Notch> notches = notches_of_cells(discretization.grid);
     for (unsigned int m = 0; m < kernels.size(); ++m)

@@ -45,6 +45,8 @@ namespace Voussoir
                            going_on.run.state.time > 0.3 * end &&
                              going_on.run.state.time < 0.6 * end);
           going_on.run.march();
+          verdicts.is_true("same warnings",
+                           straight.log.warnings() == going_on.log.warnings());
           verdicts.is_true("same displacement, bit for bit",
                            same(straight.run.state.displacement,
                                 going_on.run.state.displacement));

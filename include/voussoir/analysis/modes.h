@@ -36,6 +36,8 @@ namespace Voussoir
     /** The mode nearest to each measured shape, by the name of the shape. */
     nlohmann::json measured_shapes;
 
+    std::vector<std::string> warnings;
+
     /** [Hz] */
     std::vector<double>
     frequencies() const;

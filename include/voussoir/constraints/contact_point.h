@@ -109,6 +109,19 @@ namespace Voussoir
       return coefficient * (1. - at_once) * mean_pressure;
     }
 
+    /**
+     * The history at the present gap, of a point that had @p before at the
+     * beginning of a static stage: searching for equilibrium is no path.
+     *
+     * @param was_bonded whether a bond, which may have broken since, resisted
+     *   shear then; an open point without one does not slip
+     * @param distance   from the stick point of the beginning [m]
+     */
+    InterfaceHistory
+    history_since(const InterfaceHistory &before,
+                  const bool              was_bonded,
+                  const double            distance) const;
+
     /** Share of the strength of an intact bond that the force uses, in tension
      *  or in shear beyond friction. */
     double

@@ -43,6 +43,10 @@ namespace Voussoir
     StateContent
     content_of(State &state) const;
 
+    /** Those of the motion; a restart finds those of the setup anew. */
+    std::vector<std::string>
+    warnings_of_run() const;
+
     /** Sizes of the growing files, by name in the output folder [bytes]. */
     nlohmann::json
     sizes_of_files() const;
@@ -53,6 +57,7 @@ namespace Voussoir
     Contact *const      contact;
     Log                &log;
     const Checkpoint    files;
+    const std::size_t   n_warnings_before;
     const bool          by_time;
     const Schedule      schedule;
   };

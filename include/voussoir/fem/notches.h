@@ -39,6 +39,11 @@ namespace Voussoir
   notches_of_cells(const Grid &grid);
 
 
+  /** Whether cracks of one of the materials grow from tips or along planes. */
+  bool
+  any_cracks_grow(const std::vector<const CellKernel *> &kernels);
+
+
   /**
    * Factor on the tensile strength at which a first crack begins in a cell at a
    * notch. A cell averages the stress r^-s of a notch as it does the r^-1/2 of

@@ -131,13 +131,46 @@ def make_wall(folder, summary=SUMMARY, log=LOG):
 
 
 def check_profiles(run):
-    is_true("the joint is one of the dam", interfaces.joints_of(run) == ("joint",))
+    is_true("the joint is one of the dam", interfaces.contraction_joints(run) == ("joint",))
     edges = interfaces.edges_of(run, "joint")
     for side, slope in (("upstream", UPSTREAM), ("downstream", DOWNSTREAM)):
         levels, opening = edges[side]
         compare(f"levels of the profile {side}", len(levels), LEVELS + 1, 0.)
         compare(f"opening at the crest, {side} [mm]", opening[-1], slope * HEIGHT, 1e-3)
         compare(f"opening at half the height, {side} [mm]", opening[LEVELS // 2], slope * HEIGHT / 2., 1e-3)
+
+
+def check_lifts(scratch):
+    """Contraction joints are steep, lift joints are level: each kind has its own section and pictures."""
+    names = ("joint", "lift 1", "lift 2")
+    values = {**surface()["interfaces"]["surfaces"]["joint"], "smallest sliding safety": None}
+    opened = {**values, "largest opening [mm]": 3.}
+    run = make_wall(scratch / "lifts", {**SUMMARY, "interfaces": {"surfaces": dict(zip(names, (opened, values, opened)))}})
+    cells = grid.dam_of(run).grid.points.reshape(2, LEVELS, 8, 3)
+    quads = np.concatenate([cells[1, :, [0, 3, 7, 4]].transpose(1, 0, 2), *(cells[:, k, :4] for k in (1, 2))])
+    number = np.repeat([0., 1., 2.], (LEVELS, 2, 2))[:, None] * np.ones(4)
+    opening = np.where(number == 1., 0., 3. * (quads[..., 1] > 0.))  # upstream only
+    write_grid(run.folder / "interface_envelopes.vtu", quads, VTK_QUAD,
+               {"largest_opening_mm": opening, "interface": number}, {"interface_names": names})
+    columns = [f"{name} largest {what} [mm]" for name in names for what in ("opening", "slip")]
+    (run.folder / "interfaces.csv").write_text(
+        f"time [s],{','.join(columns)}\n0{',0' * len(columns)}\n1,3,0,0,0,3,0\n")
+    grid.grid_of.cache_clear()
+    interfaces.surfaces_of.cache_clear()
+    is_true("a steep joint", interfaces.contraction_joints(run) == ("joint",))
+    is_true("level joints, from below", interfaces.lift_joints(run) == ("lift 1", "lift 2"))
+    is_true("neither is a plane", interfaces.planes_of(run) == [])
+    steep, level = (section([run]) for section in (interfaces.contraction_joints_section, interfaces.lift_joints_section))
+    rows = [[row[0] for part in section.parts if isinstance(part, page.Table) for row in part.rows]
+            for section in (steep, level)]
+    is_true("each in the table of its kind, lift joints if they moved", rows == [["joint"], ["lift 2"]])
+    is_true("  the others are counted", "1 of 2 lift joints opened or slipped: lift 2 at z = 10.0 m" in level.parts[0])
+    is_true("  and all pictures have names of their own", len({picture.name for picture in steep.pictures + level.pictures})
+            == len(steep.pictures) + len(level.pictures))
+    upstream, downstream = interfaces.lifts_on_faces(run)
+    compare("opening of lift joints on the upstream face [mm]", upstream.values.max(), 3., 0.)
+    compare("  at the elevation [m]", upstream.places[upstream.values == 3., :, 1].mean(), HEIGHT / 2., 0.)
+    compare("  on the downstream face [mm]", downstream.values.max() + 1., 1., 0.)
 
 
 def check_refined(run, folder):
@@ -609,6 +642,7 @@ def main():
         scratch = pathlib.Path(name)
         run = make_wall(scratch / "wall")
         check_profiles(run)
+        check_lifts(scratch)
         check_refined(run, scratch)
         check_damage(scratch)
         check_abscissa(run)

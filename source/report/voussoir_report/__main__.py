@@ -75,8 +75,8 @@ def main():
         makers = (case.conclusions_section, case.headline_section, structure.scene_section, case.case_section,
                   structure.mesh_section, stages.stages_section, structure.modes_section, motions.input_section,
                   motions.motion_section, faces.face_stress_section, over_stress.over_stress_section,
-                  interfaces.joints_section, structure.opened_section, interfaces.planes_section,
-                  damage.damage_section, motions.energy_section, case.statistics_section, case.files_section,
+                  interfaces.contraction_joints_section, interfaces.lift_joints_section, structure.opened_section,
+                  interfaces.planes_section, damage.damage_section, motions.energy_section, case.statistics_section, case.files_section,
                   case.input_entries_section)
         # drawing takes nearly all of the time: one process for each core
         fork = multiprocessing.get_context("fork")

@@ -5,7 +5,7 @@ import numpy as np
 from . import charts
 from .faces import SIDES, panel_of
 from .grid import centre_keys, dam_in, dam_of
-from .interfaces import joint_corners, joints_of
+from .interfaces import contraction_joints, joint_corners
 from .page import Pictures, Section
 from .verdict import VISIBLE
 
@@ -56,11 +56,11 @@ def in_sections(run, field, scale):
     grid = dam_of(run).grid
     faces = grid.faces(dam_of(run).cells)
     keys, values = centre_keys(grid.points[faces]), grid.values[field][faces].mean(axis=1)
-    for name in joints_of(run):
+    for name in contraction_joints(run):
         corners = joint_corners(run, name)
         largest = [values[keys == key].max() for key in centre_keys(corners)]
         panels.append((name.removeprefix("joint "), list(corners[..., 1:]), np.array(largest)))
-    where = "the middle of the dam and its joints" if joints_of(run) else "the middle of the dam"
+    where = "the middle of the dam" + (" and its contraction joints" if contraction_joints(run) else "")
     above = scale.largest_above(np.concatenate([own for _, _, own in panels]))
     return charts.sections_map(panels, scale, f"{run.prefix}Sections in {where}, upstream on the left{above}",
                                f"{field}_sections_{run.label}")

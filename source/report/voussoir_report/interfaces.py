@@ -1,12 +1,12 @@
-"""Joints, slip planes, and blocks of rock."""
+"""Contraction joints, lift joints, slip planes, and blocks of rock."""
 
 import functools
 
 import numpy as np
 
 from . import charts, scenes
-from .faces import SIDES
-from .grid import centre_keys, dam_of, grid_of, point_keys
+from .faces import SIDES, panel_of
+from .grid import area_vectors, centre_keys, dam_of, grid_of, point_keys
 from .motion import GRAVITY
 from .page import Pictures, Section, Table, number
 from .scenes import FROM_DOWNSTREAM
@@ -26,7 +26,7 @@ def surfaces_of(run):
 
 @functools.lru_cache(maxsize=None)
 def joints_of(run):
-    """Names of the surfaces between two parts of the dam, from the right bank to the left."""
+    """Names of the surfaces between two parts of the dam."""
     dam = dam_of(run)
     if dam is None or not surfaces_of(run):
         return ()
@@ -34,9 +34,26 @@ def joints_of(run):
                              return_counts=True)
     on_both = keys[counts == 2]
     points = grid_of(run, FILE).points
-    found = [name for name, quads in surfaces_of(run).items()
-             if np.isin(centre_keys(points[quads]), on_both).all()]
-    return tuple(sorted(found, key=lambda name: points[surfaces_of(run)[name], 0].mean()))
+    return tuple(name for name, quads in surfaces_of(run).items()
+                 if np.isin(centre_keys(points[quads]), on_both).all())
+
+
+def is_level(run, name):
+    """Whether a surface is nearer to level than to steep."""
+    x, y, z = np.abs(area_vectors(joint_corners(run, name))).sum(axis=0)
+    return z > np.hypot(x, y)
+
+
+def contraction_joints(run):
+    """Names of the joints between blocks of the dam, from the right bank to the left."""
+    return tuple(sorted((name for name in joints_of(run) if not is_level(run, name)),
+                        key=lambda name: joint_corners(run, name)[..., 0].mean()))
+
+
+def lift_joints(run):
+    """Names of the joints between lifts of concrete, from below."""
+    return tuple(sorted((name for name in joints_of(run) if is_level(run, name)),
+                        key=lambda name: joint_corners(run, name)[..., 2].mean()))
 
 
 def joint_corners(run, name):
@@ -45,16 +62,17 @@ def joint_corners(run, name):
 
 
 def opening_sections(runs):
-    """Pictures of the joints from the side, coloured by their largest opening."""
+    """Pictures of the contraction joints from the side, coloured by their largest opening."""
     values = [grid_of(run, FILE).values["largest_opening_mm"] for run in runs]
     every = [[(name.removeprefix("joint "), list(joint_corners(run, name)[..., 1:]),
-               opening[surfaces_of(run)[name]].mean(axis=1)) for name in joints_of(run)]
+               opening[surfaces_of(run)[name]].mean(axis=1)) for name in contraction_joints(run)]
              for run, opening in zip(runs, values)]
     scale = charts.Scale([opening for panels in every for _, _, opening in panels], "largest opening [mm]", 0.,
                          "inferno_r", low=0.)
     pictures = []
     for run, panels in zip(runs, every):
-        caption = f"{run.prefix}The joints from the side, from the right bank to the left, upstream on the left"
+        caption = (f"{run.prefix}The contraction joints from the side, from the right bank to the left, upstream on the "
+                   "left")
         pictures.append(charts.sections_map(panels, scale, caption, f"opening_{run.label}"))
     return pictures
 
@@ -76,9 +94,9 @@ def edges_of(run, name):
 
 
 def opening_profiles(run, most):
-    """A chart for each joint of its largest opening over the elevation on both faces, with
+    """A chart for each contraction joint of its largest opening over the elevation on both faces, with
     openings up to @p most [mm]."""
-    names = joints_of(run)
+    names = contraction_joints(run)
     columns = min(len(names), 5)
     rows = -(-len(names) // columns)
     width, height = (charts.WIDTH - 0.7) / columns, 1.75
@@ -101,17 +119,19 @@ def opening_profiles(run, most):
             axes.set_ylabel("z [m]", fontsize=8.5)
     figure.legend(*axes.get_legend_handles_labels(), ncols=2, frameon=False, loc="upper center")
     figure.supxlabel("largest opening [mm]", fontsize=9)
-    return charts.picture(figure, f"{run.prefix}Largest opening of each joint over the elevation, on both faces",
+    return charts.picture(figure, f"{run.prefix}Largest opening of each contraction joint over the elevation, on "
+                          "both faces",
                           f"profile_{run.label}")
 
 
-def history(run, names, quantity, title, most):
-    """A chart of an opening or a slip of several surfaces over time, up to @p most [mm]."""
+def history(run, names, quantity, kind, most):
+    """A chart of an opening or a slip of several surfaces of a kind over time, up to @p most [mm]."""
     table = run.table("interfaces.csv")
     figure, axes = charts.new_figure(3.)
     charts.lines(axes, [(name, table.time, table[f"{name} {quantity} [mm]"]) for name in names],
                  run.title_in_chart, "time [s]", f"{quantity} [mm]", limits=(0., max(1.05 * most, 1e-3)))
-    return charts.picture(figure, title, f"{quantity.replace(' ', '_')}_{run.label}")
+    return charts.picture(figure, f"{quantity.capitalize()} of each {kind}",
+                          f"{quantity}_{kind}_{run.label}".replace(" ", "_"))
 
 
 def most_of(runs, names_of, quantity):
@@ -143,21 +163,75 @@ def recorded(runs):
             and "interfaces" in run.summary]
 
 
-def joints_section(runs):
-    runs = [run for run in recorded(runs) if joints_of(run)]
+def contraction_joints_section(runs):
+    runs = [run for run in recorded(runs) if contraction_joints(run)]
     if not runs:
         return None
     columns = max(2, min(len(runs), 3))
-    most = most_of(runs, joints_of, "largest opening")
+    most = most_of(runs, contraction_joints, "largest opening")
     if most < charts.NOISE:
-        return Section("Joints", ["No joint opened.", surfaces_table(runs, joints_of)])
+        return Section("Contraction joints", ["No contraction joint opened.", surfaces_table(runs, contraction_joints)])
     text = ("Openings are the largest over the run at each place; at an opening of zero the joint "
             "remained closed. Where keys prevent slip there is no sliding safety.")
-    return Section("Joints", [
-        text, surfaces_table(runs, joints_of),
+    return Section("Contraction joints", [
+        text, surfaces_table(runs, contraction_joints),
         Pictures(opening_sections(runs) + [opening_profiles(run, most) for run in runs]
-                 + [history(run, joints_of(run), "largest opening", "Largest opening of each joint", most)
-                    for run in runs], columns)])
+                 + [history(run, contraction_joints(run), "largest opening", "contraction joint", most) for run in runs],
+                 columns)])
+
+
+def moved_lifts(run):
+    """Names of the lift joints that opened or slipped."""
+    surfaces = run.summary["interfaces"]["surfaces"]
+    motions = {name: [surfaces[name][f"largest {what} [mm]"] for what in ("opening", "slip")] for name in lift_joints(run)}
+    return [name for name, amounts in motions.items() if any(amount is None or amount > charts.NOISE for amount in amounts)]
+
+
+def moved_in_words(run):
+    """How many lift joints opened or slipped, and which, with their mean elevations."""
+    places = [f"{name} at z = {number(joint_corners(run, name)[..., 2].mean())} m" for name in moved_lifts(run)]
+    return (f"{len(places)} of {len(lift_joints(run))} lift joints opened or slipped"
+            + (f": {', '.join(places)}" if places else ""))
+
+
+def lifts_on_faces(run):
+    """Panels of both faces with a band along each lift joint, of its largest opening there [mm]; the concrete has the
+    colour of a closed joint."""
+    dam, grid = dam_of(run), grid_of(run, FILE)
+    quads = np.concatenate([surfaces_of(run)[name] for name in lift_joints(run)])
+    edges = np.stack([quads, np.roll(quads, -1, axis=1)], axis=2).reshape(-1, 2)
+    panels = []
+    for side in SIDES:
+        face = dam.grid.points[dam.side(side)]
+        own = edges[np.isin(point_keys(grid.points), point_keys(face.reshape(-1, 3)))[edges].all(axis=1)]
+        first, second = grid.points[own].transpose(1, 0, 2)
+        up = (0., 0., 0.006 * dam.height)
+        bands = np.stack([first - up, second - up, second + up, first + up], axis=1)
+        openings = grid.values["largest_opening_mm"][own].mean(axis=1)
+        panels.append(panel_of(dam, side, np.concatenate([face, bands]), np.append(np.zeros(len(face)), openings)))
+    return panels
+
+
+def lift_joints_section(runs):
+    runs = [run for run in recorded(runs) if lift_joints(run)]
+    if not runs:
+        return None
+    counts = "; ".join(f"{run.prefix}{moved_in_words(run)}" for run in runs)
+    moved = [run for run in runs if moved_lifts(run)]
+    if not moved:
+        return Section("Lift joints", [f"{counts}."])
+    parts = [f"{counts}. Openings are the largest over the run at each place.", surfaces_table(moved, moved_lifts)]
+    most = most_of(moved, moved_lifts, "largest opening")
+    if most > charts.NOISE:
+        # the faces of a slice are too narrow
+        drawn = [(run, lifts_on_faces(run)) for run in moved if not dam_of(run).is_slice]
+        scale = charts.Scale([panel.values for _, panels in drawn for panel in panels], "largest opening [mm]", 0.,
+                             "inferno_r", low=0.)
+        pictures = [charts.face_map(panels, scale, f"{run.prefix}Largest opening of the lift joints on the faces",
+                                    f"lifts_{run.label}") for run, panels in drawn]
+        pictures += [history(run, moved_lifts(run), "largest opening", "lift joint that moved", most) for run in moved]
+        parts.append(Pictures(pictures, max(2, min(len(moved), 3))))
+    return Section("Lift joints", parts)
 
 
 def planes_of(run):
@@ -255,8 +329,7 @@ def planes_section(runs):
         for quantity in ("largest slip", "largest opening"):
             most = most_of(runs, planes_of, quantity)
             if most > charts.NOISE:
-                pictures.append(history(run, planes_of(run), quantity, f"{quantity.capitalize()} of each plane",
-                                        most))
+                pictures.append(history(run, planes_of(run), quantity, "plane", most))
     text = ("Factor of safety of a block: resistance of its planes over the driving forces (weight, water, uplift, "
             "thrust of the dam and the block's inertia as if it moved with its base), by limit equilibrium; below one "
             "the block slides, and slip and slip rate show how far. The mobilised ratio is the shear of the contact "

@@ -173,6 +173,29 @@ def check_lifts(scratch):
     compare("  on the downstream face [mm]", downstream.values.max() + 1., 1., 0.)
 
 
+def check_wide_opening(scratch):
+    """One face that opened by 2 m hides neither the openings of millimetres of a joint nor those of a lift joint."""
+    for kind, corners, pictures in (("joint", [0, 3, 7, 4], interfaces.opening_sections),
+                                    ("lift", [0, 1, 2, 3], interfaces.lift_pictures)):
+        run = make_wall(scratch / f"wide_{kind}")
+        cells = divided(divided(grid.dam_of(run).grid.points.reshape(-1, 8, 3)))
+        write_grid(run.folder / "envelopes.vtu", cells, VTK_HEXAHEDRON, {"material": np.zeros(cells.shape[:2])},
+                   {"material_names": ["concrete"]})
+        quads = cells[:, corners]
+        axis, at = {"joint": (0, 0.), "lift": (2, HEIGHT / 2.)}[kind]
+        quads = quads[(quads[..., axis] == at).all(axis=1)]
+        opening = np.linspace(0., 8., len(quads))[:, None] * np.ones(4)
+        opening[-1] = 2000.
+        write_grid(run.folder / "interface_envelopes.vtu", quads, VTK_QUAD,
+                   {"largest_opening_mm": opening, "interface": np.zeros(quads.shape[:2])}, {"interface_names": [kind]})
+        grid.dam_in.cache_clear()
+        grid.grid_of.cache_clear()
+        scale = interfaces.scale_of_openings([opening], "largest opening [mm]")
+        is_true(f"openings of a {kind} are seen beside a wide one", 8. <= scale.levels[-1] <= 20. and scale.above)
+        is_true("  and the widest is in the caption",
+                f"; the largest value is {page.number(2000.)} mm" in pictures([run])[0].caption)
+
+
 def check_refined(run, folder):
     """Dimensions of the wall with two cells refined, one at the crest and once more in a
     corner, are those of the wall: faces at hanging nodes are no faces of the dam."""
@@ -643,6 +666,7 @@ def main():
         run = make_wall(scratch / "wall")
         check_profiles(run)
         check_lifts(scratch)
+        check_wide_opening(scratch)
         check_refined(run, scratch)
         check_damage(scratch)
         check_abscissa(run)

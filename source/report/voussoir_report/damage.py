@@ -5,9 +5,8 @@ import numpy as np
 from . import charts
 from .faces import SIDES, panel_of
 from .grid import centre_keys, dam_in, dam_of
-from .interfaces import contraction_joints, joint_corners
+from .interfaces import contraction_joints, joint_corners, scale_of_openings
 from .page import Pictures, Section
-from .verdict import VISIBLE
 
 SCALES = {"tension_damage": "damage in tension [-]", "compression_damage": "damage in compression [-]",
           "damage": "damage [-]", "largest_crack_opening_mm": "largest opening of cracks in a cell [mm]",
@@ -28,10 +27,7 @@ def of_cells(dam, field):
 def scale_of(runs, field):
     if field.endswith("damage"):
         return charts.Scale([], SCALES[field], cut=0., colours="inferno_r", low=0., high=1.)
-    values = np.concatenate([of_cells(dam_of(run), field)[dam_of(run).cells] for run in runs])
-    visible = values[values > VISIBLE]
-    high = charts.usual_largest(visible, 0.9) if len(visible) else None
-    return charts.Scale([values], SCALES[field], colours="inferno_r", low=0., high=high)
+    return scale_of_openings([of_cells(dam_of(run), field)[dam_of(run).cells] for run in runs], SCALES[field])
 
 
 def on_faces(run, field, scale):

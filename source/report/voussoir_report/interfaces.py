@@ -10,6 +10,7 @@ from .grid import area_vectors, centre_keys, dam_of, grid_of, point_keys
 from .motion import GRAVITY
 from .page import Pictures, Section, Table, number
 from .scenes import FROM_DOWNSTREAM
+from .verdict import VISIBLE
 
 FILE = "interface_envelopes.vtu"
 
@@ -61,18 +62,26 @@ def joint_corners(run, name):
     return grid_of(run, FILE).points[surfaces_of(run)[name]]
 
 
+def scale_of_openings(values, label):
+    """Colours of openings of joints or cracks [mm], so that visible ones are seen beside those of fragments."""
+    values = np.concatenate([np.zeros(0), *(np.ravel(own) for own in values)])
+    visible = values[values > VISIBLE]
+    high = charts.usual_largest(visible, 0.9) if len(visible) else None
+    return charts.Scale([values], label, colours="inferno_r", low=0., high=high)
+
+
 def opening_sections(runs):
     """Pictures of the contraction joints from the side, coloured by their largest opening."""
     values = [grid_of(run, FILE).values["largest_opening_mm"] for run in runs]
     every = [[(name.removeprefix("joint "), list(joint_corners(run, name)[..., 1:]),
                opening[surfaces_of(run)[name]].mean(axis=1)) for name in contraction_joints(run)]
              for run, opening in zip(runs, values)]
-    scale = charts.Scale([opening for panels in every for _, _, opening in panels], "largest opening [mm]", 0.,
-                         "inferno_r", low=0.)
+    scale = scale_of_openings([opening for panels in every for _, _, opening in panels], "largest opening [mm]")
     pictures = []
     for run, panels in zip(runs, every):
+        above = scale.largest_above(np.concatenate([opening for _, _, opening in panels]))
         caption = (f"{run.prefix}The contraction joints from the side, from the right bank to the left, upstream on the "
-                   "left")
+                   f"left{above}")
         pictures.append(charts.sections_map(panels, scale, caption, f"opening_{run.label}"))
     return pictures
 
@@ -212,6 +221,18 @@ def lifts_on_faces(run):
     return panels
 
 
+def lift_pictures(runs):
+    """Pictures of the lift joints along the faces of the dam, coloured by their largest opening."""
+    every = [lifts_on_faces(run) for run in runs]
+    scale = scale_of_openings([panel.values for panels in every for panel in panels], "largest opening [mm]")
+    pictures = []
+    for run, panels in zip(runs, every):
+        above = scale.largest_above(np.concatenate([panel.values for panel in panels]))
+        pictures.append(charts.face_map(panels, scale, f"{run.prefix}Largest opening of the lift joints on the faces{above}",
+                                        f"lifts_{run.label}"))
+    return pictures
+
+
 def lift_joints_section(runs):
     runs = [run for run in recorded(runs) if lift_joints(run)]
     if not runs:
@@ -224,11 +245,7 @@ def lift_joints_section(runs):
     most = most_of(moved, moved_lifts, "largest opening")
     if most > charts.NOISE:
         # the faces of a slice are too narrow
-        drawn = [(run, lifts_on_faces(run)) for run in moved if not dam_of(run).is_slice]
-        scale = charts.Scale([panel.values for _, panels in drawn for panel in panels], "largest opening [mm]", 0.,
-                             "inferno_r", low=0.)
-        pictures = [charts.face_map(panels, scale, f"{run.prefix}Largest opening of the lift joints on the faces",
-                                    f"lifts_{run.label}") for run, panels in drawn]
+        pictures = lift_pictures([run for run in moved if not dam_of(run).is_slice])
         pictures += [history(run, moved_lifts(run), "largest opening", "lift joint that moved", most) for run in moved]
         parts.append(Pictures(pictures, max(2, min(len(moved), 3))))
     return Section("Lift joints", parts)

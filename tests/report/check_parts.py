@@ -5,6 +5,7 @@ that is open wider upstream, and summaries with evident verdicts.
 usage: check_parts.py FOLDER_OF_THE_REPORT
 """
 
+import base64
 import functools
 import hashlib
 import json
@@ -519,6 +520,12 @@ def check_fragment(scratch):
     is_true("the motion of the dam is magnified", float(re.search(r"drawn (\S+) times", caption)[1]) > 50.)
     is_true("  and what is left out is in the caption", re.search(
         f"the largest value is {page.number(2002.)} cm, and what moved by more than \\S+ cm is left out", caption))
+    turning = structure.scene_section([run]).parts[0]
+    drawn = json.loads(turning.data)
+    sizes = {name: len(base64.b64decode(drawn[name])) for name in ("dam", "motion")}
+    is_true("it is not in the motion of the scene that turns", 0 < sizes["motion"] < sizes["dam"]
+            and 32767. * drawn["motionUnit"] < 0.05)
+    is_true("  and the page says so", re.fullmatch(r"what moved by more than \S+ cm is left out", turning.left_out))
     is_true("the widest opening is that of the summary", "by 20.3 mm when widest, at 0.990 s" in caption)
     rows = {what.split(",")[0]: value for what, value in case.headline_section([run]).parts[0].rows}
     is_true("displacements of points and of the dam", rows["largest displacement of any point of the dam"] == page.number(2002.)

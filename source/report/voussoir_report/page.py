@@ -59,6 +59,7 @@ class Scene:
     factor: float = 0.  # largest magnification of the motion
     time: str = ""
     bar: object = None  # picture of the colour bar
+    left_out: str = ""  # of the motion
 
     @property
     def caption(self):

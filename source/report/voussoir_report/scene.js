@@ -46,10 +46,18 @@
     window3d.setContainer(canvas);
     window3d.resize();
     const renderer = window3d.getRenderer();
-    const dam = surface(vtk, start.slice(), decoded(scene.colours, Uint8Array));
-    dam.look.setEdgeVisibility(true);
-    dam.look.setEdgeColor(0.25, 0.25, 0.25);
-    renderer.addActor(dam.actor);
+    const colours = decoded(scene.colours, Uint8Array);
+    const concrete = (from, to) => {
+      const part = surface(vtk, start.slice(from, to), colours.slice(from, to));
+      part.look.setEdgeVisibility(true);
+      part.look.setEdgeColor(0.25, 0.25, 0.25);
+      renderer.addActor(part.actor);
+      return part;
+    };
+    // fragments without motion are the last ones
+    const moving = motion.length || start.length;
+    const dam = concrete(0, moving);
+    const fragments = moving < start.length ? concrete(moving, start.length) : null;
     const rockPoints = metres(scene.rock);
     const rock = rockPoints.length ? surface(vtk, rockPoints) : null;
     if (rock) {
@@ -81,8 +89,9 @@
     if (slider) slider.addEventListener("input", () => {
       const factor = Number(slider.value);
       place.querySelector("output").textContent = `${factor.toPrecision(3)} times`;
-      dam.data.getPoints().setData(start.map((value, i) => value + factor * motion[i]), 3);
+      dam.data.getPoints().setData(motion.map((value, i) => start[i] + factor * value), 3);
       dam.data.modified();
+      if (fragments) fragments.actor.setVisibility(factor === 0);
       render();
     });
     const box = place.querySelector("input[type=checkbox]");

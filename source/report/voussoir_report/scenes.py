@@ -123,9 +123,10 @@ def packed(values, kind):
 
 
 def as_json(corners, colours, rock, motion, factor):
-    """A scene for the browser: quadrilaterals of the dam (n, 4, 3) with colours (n, 4, 3)
-    and a motion (n, 4, 3) [m] that is drawn up to @p factor times, and quadrilaterals of the
-    rock; in 16 bits, that is to centimetres."""
+    """A scene for the browser: quadrilaterals of the dam (n, 4, 3) with colours (n, 4, 3),
+    a motion (m, 4, 3) [m] of the first of them that is drawn up to @p factor times, while those
+    without motion are hidden, and quadrilaterals of the rock; in 16 bits, that is to
+    centimetres."""
     middle = 0.5 * (corners.min(axis=(0, 1)) + corners.max(axis=(0, 1)))
     unit = np.abs(np.concatenate([corners, rock]) - middle).max() / 32767.
     motion_unit = max(np.abs(motion).max(), 1e-9) / 32767.

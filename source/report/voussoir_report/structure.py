@@ -302,10 +302,13 @@ def magnified(dam, largest):
     return float(f"{0.12 * dam.height / largest:.0e}")
 
 
-def drawn_largest(dam, amount):
-    """The largest of the motions [m] that are drawn: without fragments, which move farther than the rest and than a
-    thousandth of the height."""
-    return charts.usual_largest(amount, 0.99, 1e-3 * dam.height)
+def without_fragments(dam, amount):
+    """The largest of the motions of faces (n, 4) [m] without fragments, which move farther than the rest and than a
+    thousandth of the height and would be drawn far outside; whether each face belongs to none; and words on those that
+    do."""
+    largest = charts.usual_largest(amount, 0.99, 1e-3 * dam.height)
+    near = amount.max(axis=1) <= 2. * largest
+    return largest, near, "" if near.all() else f"what moved by more than {number(200. * largest)} cm is left out"
 
 
 def deformed(run):
@@ -324,15 +327,11 @@ def deformed(run):
     amount = np.linalg.norm(motion[faces], axis=2)
     if amount.max() < 1e-9:
         return None
-    largest = drawn_largest(dam, amount)
+    largest, near, left_out = without_fragments(dam, amount)
     factor = magnified(dam, largest)
     scale = charts.Scale([100. * amount], "displacement [cm]", 0., "viridis", low=0., high=100. * largest)
-    # a fragment would be drawn far outside
-    farthest = 2. * largest
-    near = amount.max(axis=1) <= farthest
     moved = dam.grid.points[faces[near]] + factor * motion[faces[near]]
-    thrown = scale.largest_above(100. * amount) + (
-        "" if near.all() else f", and what moved by more than {number(100. * farthest)} cm is left out")
+    thrown = scale.largest_above(100. * amount) + (f", and {left_out}" if left_out else "")
     actors = [scenes.quadrilaterals(moved, scale.colours(scale.norm(100. * amount[near]))[..., :3])]
     image = scenes.draw(actors, moved.reshape(-1, 3), FROM_DOWNSTREAM)
     since = "the start of the earthquake" if start_of(run) else "the unloaded model"
@@ -360,6 +359,10 @@ def scene_section(runs):
     faces = dam.grid.faces(dam.cells) if shown and 6 * len(dam.cells) < MOST_FACES else dam.exposed
     if len(faces) > MOST_FACES:
         return None
+    motion = motion_of(run, shown[1])[faces] if shown else np.zeros((*faces.shape, 3))
+    largest, near, left_out = without_fragments(dam, np.linalg.norm(motion, axis=-1))
+    factor = magnified(dam, largest) if largest > 1e-9 else 0.
+    faces, motion = np.concatenate([faces[near], faces[~near]]), motion[near]
     if STRESS in dam.grid.values:
         values = dam.grid.values[STRESS][faces]
         scale = charts.Scale([values], "largest principal stress of the run [MPa]")
@@ -370,9 +373,6 @@ def scene_section(runs):
         colours = np.broadcast_to(scenes.CONCRETE, (*faces.shape, 3))
     rock = rock_faces(dam) if len(dam.others) else np.zeros((0, 4, 3))
     rock = rock if len(rock) + len(faces) <= MOST_FACES else rock[:0]
-    motion = motion_of(run, shown[1])[faces] if shown else np.zeros((*faces.shape, 3))
-    largest = drawn_largest(dam, np.linalg.norm(motion, axis=-1))
-    factor = magnified(dam, largest) if largest > 1e-9 else 0.
     data = scenes.as_json(dam.grid.points[faces], colours, rock, motion, factor)
     actors = [scenes.quadrilaterals(dam.grid.points[faces], colours)]
     if len(rock):
@@ -380,4 +380,4 @@ def scene_section(runs):
     picture = charts.framed(*scenes.draw(actors, dam.points, FROM_DOWNSTREAM, zoom=0.9),
                             f"{run.prefix}The dam from downstream and above{what}", f"scene_{run.label}", scale, dpi=charts.FULL_DPI)
     return Section("The dam in space", [Scene(data, picture, factor, number(shown[0]) if shown else "",
-                                             scale and scale.picture(f"scene_bar_{run.label}"))])
+                                             scale and scale.picture(f"scene_bar_{run.label}"), left_out)])

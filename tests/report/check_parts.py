@@ -460,7 +460,17 @@ def check_stages(scratch):
                                                     "place of the largest arch stress [m]": [3., 0., 5.],
                                                     "smallest": {"value [MPa]": None, "at [m]": [1e-15, 2., 3.]}}}}
     run = make_wall(scratch / "stages", {**SUMMARY, "static state": {"stages": [stage("weight", 1.), stage("water", 2.)]}})
-    tables = {part.head[0]: part for part in stages.stages_section([run]).parts if isinstance(part, page.Table)}
+    every = [part for part in stages.stages_section([run]).parts if isinstance(part, page.Table)]
+    seen, folded = ({part.head[0]: part for part in every if bool(part.folded) == kind} for kind in (False, True))
+    tables = {**seen, **folded}
+    is_true("the last stage is seen at once", seen.keys() == tables.keys() and all(
+        row[1] == "usual" for name in ("points", "face stresses", "interfaces") for row in seen[name].rows))
+    is_true("  all stages are folded behind it", folded.keys() == {"points", "face stresses"}
+            and folded["points"].folded == "points, after each stage")
+    single = {**SUMMARY, "static state": {"stages": [stage("weight", 1.)]}}
+    is_true("  nothing is folded after a single stage", not any(
+        part.folded for part in stages.stages_section([make_wall(scratch / "one_stage", single)]).parts
+        if isinstance(part, page.Table)))
     is_true("stages by themselves, without what the solver did", tables["after the stage"].rows
             == [["weight", "100"], ["usual", "200"]] and tables["after the stage"].head[1:] == ["largest displacement [mm]"])
     is_true("points over the stages, their position first", tables["points"].rows

@@ -33,11 +33,13 @@ class Judged(str):
 
 @dataclasses.dataclass
 class Table:
-    """Rows of texts under a heading; the first column names the row."""
+    """Rows of texts under a heading; the first column names the row. On a screen a table is @p folded behind a title,
+    if it has one."""
 
     head: list
     rows: list
     caption: str = ""
+    folded: str = ""
 
 
 @dataclasses.dataclass

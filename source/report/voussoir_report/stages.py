@@ -123,9 +123,17 @@ def stage_pictures(run):
     return pictures
 
 
+def last_seen_first(table, last):
+    """The lines of a table after the last stage, by their words, and the whole table folded behind them."""
+    rows = [row for row in table.rows if tuple(row[:2]) in last]
+    if len(rows) in (0, len(table.rows)):
+        return [table]
+    return [Table(table.head, rows), Table(table.head, table.rows, folded=f"{table.head[0]}, after each stage")]
+
+
 def stages_section(runs):
     """Tables of the quantities of stages, and of each group of named objects."""
-    groups = {}
+    groups, last = {}, set()
     shown = different(runs)
     for run in shown:
         prefix = run.prefix if len(shown) > 1 else ""
@@ -137,14 +145,18 @@ def stages_section(runs):
                 for name, quantities in objects_in(values[group]) if isinstance(values[group], dict) else ():
                     name = prefix + name
                     groups.setdefault(group, {}).setdefault(name, []).append(((name, stage), quantities))
+                    if stage == stages_of(run)[-1][0]:
+                        last.add((name, stage))
     tables = [table_of([group, "after the stage"] if group else ["after the stage"],
                        [row for rows in of_names.values() for row in rows]) for group, of_names in groups.items()]
-    tables = [table for table in tables if table.rows]
+    tables = [part for table in tables if table.rows for part in last_seen_first(table, last)]
     if not tables:
         return None
     pictures = [picture for run in shown if run.has(FILE) for picture in stage_pictures(run)]
     return Section("Static stages", [
         *(["They are the same in all runs."] if len(shown) == 1 < len(runs) else []),
         "Results after each stage, under all loads so far. Displacements are relative to the unloaded model. Objects "
-        "whose values are all zero after a stage, such as joints that are grouted later, have no line for it.", *tables,
+        "whose values are all zero after a stage, such as joints that are grouted later, have no line for it."
+        + (" Tables of objects show the last stage; those of all stages unfold on a screen, and are in static_stages.csv."
+           if any(table.folded for table in tables) else ""), *tables,
         *([Pictures(pictures, 2)] if pictures else [])])

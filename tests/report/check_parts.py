@@ -386,6 +386,31 @@ def check_openings(scratch):
             == ("0.834 mm", "no limit in the case", "to be judged", "wedge rear plane"))
 
 
+def check_bonds(scratch):
+    """Bonds of interfaces crack where they open or slip; joints without bond do not."""
+    run = make_wall(scratch / "bonds")
+    run.parameters |= {"Interfaces/Names": "joints, lifts, contact", "Interfaces/joints/Face sets": "joint *",
+                       "Interfaces/joints/Law": "friction", "Interfaces/lifts/Face sets": "lift *",
+                       "Interfaces/lifts/Law": "softening bond", "Interfaces/contact/Face sets": "",
+                       "Interfaces/contact/Between": "dam, rock", "Interfaces/contact/Law": "brittle bond"}
+    surfaces = {name: {"largest opening [mm]": opening, "largest slip [mm]": slip, "largest open share [%]": share}
+                for name, opening, slip, share in (("joint 1", 5., 0., 60.), ("lift 1", 1e-9, 1e-9, 0.), ("lift 2", 0.4, 0., 11.),
+                                                   ("lift 3", 0.2, 0., 3.), ("contact", 0., 0.3, 0.))}
+    for name, among, found, judged, place in (
+            ("open", surfaces, "3 of 4", "to be judged",
+             "lift 2: opening 0.400 mm, slip 0 mm, 11.0 % of its area open at once during the run"),
+            ("slipped", {"contact": surfaces["contact"]}, "1 of 1", "to be judged",
+             "contact: opening 0 mm, slip 0.300 mm, 0 % of its area open at once during the run"),
+            ("intact", {"lift 1": surfaces["lift 1"]}, "0 of 1", "met", "")):
+        run.summary["interfaces"] = {"surfaces": among}
+        one = next(one for one in verdict.engineering_results(run).lines if one.what == "bonded interfaces that cracked")
+        is_true(f"bonds, {name}: {found}, {judged}, {place}", (one.found, one.judged, one.place) == (found, judged, place))
+    run.summary["static state"] = {"stages": [{"interfaces": {"lift 1": {"largest opening [mm]": 0.2}}}, {}]}
+    is_true("  one that cracked in a static stage and closed", verdict.bond_line(run).place.startswith("lift 1: opening 0.200 mm"))
+    run.summary["interfaces"] = {"surfaces": {"joint 1": surfaces["joint 1"]}}
+    is_true("no line without bonds", not any("bond" in one.what for one in verdict.engineering_results(run).lines))
+
+
 def limited(folder):
     """A study in this folder, with a limit."""
     found = study.Study(folder)
@@ -698,6 +723,7 @@ def main():
         check_verdicts(scratch)
         check_compression(scratch)
         check_openings(scratch)
+        check_bonds(scratch)
         check_study(scratch)
         check_page(scratch)
     verdicts.end()

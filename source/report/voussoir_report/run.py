@@ -19,7 +19,9 @@ SUMMARY = Group(
                       "peak memory of a rank [MB]"), NUMBER),
      "static state": Group(optional={"seconds": NUMBER, "stages": [Group(
          optional={"sum of loads so far [N]": [NUMBER], "sum of reactions [N]": [NUMBER],
-                   "largest displacement [m]": NUMBER, "names": [TEXT]})]}),
+                   "largest displacement [m]": NUMBER, "names": [TEXT],
+                   "interfaces": Group(others=Group(optional=dict.fromkeys(
+                       ("largest opening [mm]", "largest slip [mm]"), NUMBER_OR_NONE)))})]}),
      "refined where cracks are expected": Group(
          {"chosen": TEXT, **dict.fromkeys(("cells before", "cells chosen", "cells after"), NUMBER)},
          {"longest edge asked for [m]": Group(others=NUMBER),
@@ -42,7 +44,8 @@ SUMMARY = Group(
          {"surfaces": Group(others=Group(dict.fromkeys(
              ("area [m2]", "largest opening [mm]", "largest slip [mm]", "residual slip [mm]",
               "smallest sliding safety", "time at safety one or below [s]"), NUMBER_OR_NONE),
-             {"slip rate at the end [mm/s]": NUMBER_OR_NONE}))},
+             dict.fromkeys(("slip rate at the end [mm/s]", "time of the largest opening [s]", "largest open share [%]"),
+                           NUMBER_OR_NONE)))},
          {"effort": Group(optional={"unsolved clusters": NUMBER}),
           "blocks": Group(others=Group(
              {"time at safety one or below [s]": NUMBER},

@@ -109,7 +109,7 @@ def numerical_checks(run):
 def engineering_results(run):
     """Results for the dam, from the summary."""
     lines = [line for line in (*lines_of(run, RESULTS), tension_line(run), pressure_line(run), crushing_line(run),
-                               *opening_lines(run)) if line]
+                               *opening_lines(run), bond_line(run)) if line]
     judged = worst(lines)
     title = {MET: "All assessed criteria are met", NOT_MET: "Not all criteria are met",
              TO_JUDGE: "To be judged: results without a limit",
@@ -193,10 +193,16 @@ def surfaces_of(run):
     return run.summary.get("interfaces", {}).get("surfaces", {})
 
 
+def section_of(run, surface):
+    """The section of the interface to which a surface belongs; one between two cell sets has the name of the interface."""
+    return next((f"Interfaces/{name}" for name, _ in run.objects("Interfaces")
+                 if any(fnmatch.fnmatch(surface, pattern) for pattern in run.list(f"Interfaces/{name}/Face sets") or [name])),
+                "")
+
+
 def key_depth(run, surface):
     """Depth of the keys of a surface [mm]; 0 without keys."""
-    return next((1e3 * run.number(f"Interfaces/{name}/Key depth") for name, _ in run.objects("Interfaces")
-                 if any(fnmatch.fnmatch(surface, pattern) for pattern in run.list(f"Interfaces/{name}/Face sets"))), 0.)
+    return 1e3 * run.number(f"{section_of(run, surface)}/Key depth")
 
 
 def opening_lines(run):
@@ -215,6 +221,32 @@ def opening_lines(run):
         yield Line("largest opening of a joint or plane" + (" without keys" if keyed else ""),
                    f"{number(clean(others[name]))} mm", "closed" if closed else "no limit in the case",
                    MET if closed else TO_JUDGE, "" if closed else name)
+
+
+def bond_line(run):
+    """How many of the interfaces with a bond cracked, by an opening or a slip in the run or in a static stage, and the
+    most open one of them."""
+    sections = {name: section_of(run, name) for name in surfaces_of(run)}
+    bonded = [name for name, section in sections.items()
+              if run.entry(f"{section}/Law").endswith("bond") and not run.number(f"{section}/Initial gap")]
+    if not bonded:
+        return None
+    states = [surfaces_of(run), *(stage.get("interfaces", {}) for stage in run.summary.get("static state", {}).get("stages", []))]
+
+    def extent(name):
+        found = ([state.get(name, {}).get(key, 0.) for state in states]
+                 for key in ("largest open share [%]", "largest opening [mm]", "largest slip [mm]"))
+        return [max(math.inf if value is None else clean(value) for value in values) for values in found]
+
+    cracked = [name for name in bonded if any(extent(name))]
+    place = ""
+    if cracked:
+        name = max(cracked, key=extent)
+        share, opening, slip = extent(name)
+        place = (f"{name}: opening {number(opening)} mm, slip {number(slip)} mm, {number(share)} % of its area open at once "
+                 "during the run")
+    return Line("bonded interfaces that cracked", f"{len(cracked)} of {len(bonded)}",
+                "no limit in the case" if cracked else "none", TO_JUDGE if cracked else MET, place)
 
 
 def verdicts_of(run):

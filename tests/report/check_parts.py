@@ -513,15 +513,18 @@ def check_stages(scratch):
     settled = wall.points[wall.cells] * (0., 0., -1e-3)
     write_grid(run.folder / stages.FILE, wall.points[wall.cells], VTK_HEXAHEDRON,
                {"material": np.zeros(wall.cells.shape)}, {"material_names": ["concrete"]},
-               vectors={"displacement after weight": settled, "displacement after water": 2. * settled})
+               vectors={"displacement after weight": settled, "displacement after usual": 2. * settled})
     scenes.open_display()
     pictures = stages.stages_section([run]).parts[-1].pictures
     is_true("a picture of each stage", ['stage "weight"' in pictures[0].caption, "up to 20.0 mm" in pictures[0].caption,
-                                        'stage "water"' in pictures[1].caption, "up to 40.0 mm" in pictures[1].caption]
+                                        'stage "usual"' in pictures[1].caption, "up to 40.0 mm" in pictures[1].caption]
             == 4 * [True] and len(pictures) == 2)
     run.parameters |= {"Static state/Stages": "weight; usual: water, silt", "Interfaces/joint/Grouted after": "water"}
     is_true("  with what grout has filled, from then on", ["after water, are filled and no openings" in picture.caption
                                                           for picture in stages.stage_pictures(run)] == [False, True])
+    run.parameters["Ground motion/Type"] = "sine"
+    is_true("load cases have the names of their stages", [row[0] for row in case.loads_table(run).rows]
+            == ["weight", "usual", "usual + earthquake"])
     is_true("no stage, no section", stages.stages_section([make_wall(scratch / "no_stages")]) is None)
 
 

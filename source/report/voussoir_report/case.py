@@ -105,11 +105,11 @@ def loads_table(run):
         result = found[n] if n < len(found) else {}
         combination, _, loads = stage.rpartition(":")
         names = [name.strip() for name in loads.split(",")]
-        rows.append([f"static {n + 1}" + (f", {combination.strip()}" if combination else ""), listed(load_in_words(run, name) for name in names),
+        rows.append([combination.strip() or ", ".join(names), listed(load_in_words(run, name) for name in names),
                      force(result.get("sum of loads so far [N]")), force(result.get("sum of reactions [N]")),
                      number(100. * result["largest displacement [m]"]) if "largest displacement [m]" in result else "–"])
     if run.entry("Ground motion/Type", "none") != "none":
-        rows.append([f"{'static ' + str(len(stages)) + ' + ' if stages else ''}earthquake",
+        rows.append([f"{rows[-1][0]} + earthquake" if stages else "earthquake",
                      earthquake_in_words(run), "–", "–", "–"])
     heads = ["load case", "loads", "sum of loads so far x; y; z [MN]", "sum of reactions x; y; z [MN]",
              "largest displacement so far [cm]"]

@@ -88,10 +88,10 @@ namespace Voussoir
                                      0.5 * (foot.front()[0] + foot.back()[0]));
       const auto   crown =
         nearest_in_x("crest at the crown", crest, base.position[0]);
-      const auto lower = nearest_in_x("crest at its lower quarter of x",
+      const auto lower = nearest_in_x("crest at the right quarter point",
                                       crest,
                                       first + 0.25 * (last - first));
-      const auto upper = nearest_in_x("crest at its upper quarter of x",
+      const auto upper = nearest_in_x("crest at the left quarter point",
                                       crest,
                                       first + 0.75 * (last - first));
       // a section of one cell has no quarters

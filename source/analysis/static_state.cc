@@ -202,7 +202,7 @@ namespace Voussoir
       const Tensor<1, 3> reactions = resultant(state.force);
       const double       largest   = largest_amount(state.displacement);
       std::ostringstream text;
-      text << std::setprecision(4) << "  stage \"" << join(applied.loads, ", ")
+      text << std::setprecision(4) << "  stage \"" << applied.title()
            << "\": " << effort.iterations << " iterations, "
            << duration_text(seconds) << "; reactions " << meganewtons(reactions)
            << ", largest displacement " << 1e3 * largest << " mm";

@@ -117,9 +117,11 @@ namespace Voussoir
                 traction     = point.normal * (point.stress * point.normal);
     const ElasticConstants elastic =
       solid.materials[material]->elastic_constants();
-    const double strain_across = across[place.lane];
-    if (!(strain_across > 0.) ||
-        traction[place.lane] < -1e-6 * elastic.young_modulus * strain_across)
+    // less what would make the traction compressive across a closed crack
+    const double strain_across =
+      across[place.lane] +
+      std::min(traction[place.lane], 0.) / elastic.young_modulus;
+    if (!(strain_across > 0.))
       return 0.;
     const auto strain = history.inelastic_strain(place,
                                                  q,

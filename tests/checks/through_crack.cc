@@ -122,9 +122,47 @@ namespace Voussoir
       }
     };
 
+    /**
+     * A plate that is pulled apart by 1 mm along a layer at an angle to its
+     * principal stress: the crack is as wide as the ends have moved, with the
+     * stress along it that its shear leaves.
+     */
+    class InclinedCrack : public Check
+    {
+    public:
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm       communicator) override
+      {
+        for (const std::string direction : {"rotating", "fixed"})
+          {
+            const std::string folder     = "inclined_crack_" + direction;
+            const auto        parameters = make_case(
+              file.with({"Output/Folder=" + folder,
+                                "Materials/weak/Crack direction=" + direction}));
+            make_simulation_with_files(*parameters, communicator)->run.march();
+            MPI_Barrier(communicator);
+            const auto found = read_summary(folder).at("through cracks");
+            verdicts.near(
+              direction + ": open from face to face at one moment [mm]",
+              found.at("largest opening from face to face at one moment [mm]"),
+              1.,
+              0.1);
+            verdicts.near("  at the end [mm]",
+                          found.at("opening from face to face at the end [mm]"),
+                          1.,
+                          0.1);
+          }
+      }
+    };
+
     // Reference: closed form
     const Registry<Check>::Add<ThroughCrack>
       registered("through crack", "A crack from face to face, and none.");
+    // Reference: closed form
+    const Registry<Check>::Add<InclinedCrack>
+      inclined("inclined crack", "A crack at an angle to rows of cells.");
     // Reference: closed form
     const Registry<Check>::Add<CracksInTurn>
       in_turn("cracks in turn", "Cracks from both faces that never meet.");

@@ -52,10 +52,11 @@ namespace Voussoir
     }
 
     /** At the last step [m]: the band times the largest principal value of e_in
-     *  = e - C^-1 : sigma or the strain across the crack, n . e . n, if that is
-     *  less; at most the largest opening so far. Where that strain is
-     *  compressive the crack is closed, even if shear along an inclined strut
-     *  gives an opening; the expansion of crushed concrete is no crack. */
+     *  = e - C^-1 : sigma or, if that is less, of the strain across the crack
+     *  n . e . n + <n . sigma . n>_- / E ; at most the largest opening so far.
+     *  Where the latter is negative the crack is closed, even if shear along an
+     *  inclined strut gives an opening; the expansion of crushed concrete is no
+     *  crack. */
     double
     now() const;
 

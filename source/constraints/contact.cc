@@ -187,8 +187,10 @@ namespace Voussoir
   {
     before_approach.clear();
     for (const ContactPoint &point : interfaces.points)
-      before_approach.push_back(
-        {point.history, point.stick_point, point.largest_slip});
+      before_approach.push_back({point.history,
+                                 point.stick_point,
+                                 point.bar_extension,
+                                 point.largest_slip});
   }
 
 
@@ -207,6 +209,8 @@ namespace Voussoir
                               (point.stick_point - before.stick_point).norm());
         point.largest_slip =
           std::max(before.largest_slip, std::hypot(point.gap[1], point.gap[2]));
+        point.bar_extension = before.bar_extension;
+        interfaces.yield_bars(point);
         interfaces.update_limits(point);
       }
     for (ContactSurface &surface : interfaces.surfaces)

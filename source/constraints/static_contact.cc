@@ -300,10 +300,14 @@ namespace Voussoir
                 std::max(before[k].history.opening,
                          opening - over_relaxation * closed);
           }
+        const double bars   = point.bar_extension;
+        point.bar_extension = before[k].bar_extension;
         interfaces.yield_bars(point);
         interfaces.update_limits(point);
 
-        number[0] += differ(limits.bond, point.limits.bond) ||
+        number[0] += std::abs(point.bar_extension - bars) >
+                       1e-6 * std::abs(point.gap[0]) ||
+                     differ(limits.bond, point.limits.bond) ||
                      differ(limits.tension, point.limits.tension) ||
                      differ(limits.cohesion, point.limits.cohesion) ||
                      limits.locked != point.limits.locked;

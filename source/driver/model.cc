@@ -301,9 +301,10 @@ namespace Voussoir
     std::ostringstream report;
     solid = parameters.make_mesh(report);
     order_along_curve(solid); // its cells keep these numbers in checkpoints
-    surfaces = parameters.interfaces.split(solid);
     log(report.str());
+    // before, cells of water would hold the sides of an interface together
     water     = take_water(parameters, solid);
+    surfaces  = parameters.interfaces.split(solid);
     materials = parameters.material_of_coarse_cells(solid);
     check_parts(parameters, solid, surfaces, log);
     report_sets_on_interfaces(parameters, solid, surfaces, log);

@@ -19,7 +19,8 @@ namespace Voussoir
   namespace
   {
     constexpr int format =
-      10; // since bonds at rest follow the equilibrium alone
+      11; // since bars at rest follow the equilibrium alone, and laws that
+          // flow have filters of their plastic strain
 
 
     Bytes

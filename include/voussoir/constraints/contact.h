@@ -175,8 +175,9 @@ namespace Voussoir
     struct Slid
     {
       InterfaceHistory     history;
-      dealii::Tensor<1, 2> stick_point;  // [m]
-      double               largest_slip; // [m]
+      dealii::Tensor<1, 2> stick_point;   // [m]
+      double               bar_extension; // [m]
+      double               largest_slip;  // [m]
     };
     std::vector<Slid> before_approach; // of each point
 

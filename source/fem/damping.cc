@@ -50,7 +50,7 @@ namespace Voussoir
                       branches,
                       "Number of Maxwell branches; with 3 the damping ratio "
                       "varies by about 5 % over a band of 1 to 20 Hz.",
-                      Patterns::Integer(1, 6));
+                      Patterns::Integer(1, most_branches));
     prm.add_parameter(
       "Reference frequency",
       reference,

@@ -43,6 +43,7 @@ namespace Voussoir
     {
       // e_p, k_t, k_c
       static constexpr unsigned int n_history = 8;
+      static constexpr bool         flows     = true;
 
       using Principal = std::array<double, 3>;
 

@@ -28,7 +28,8 @@ namespace Voussoir
                    1. :
                    std::pow(*std::max_element(maxwell.decay.begin(),
                                               maxwell.decay.end()),
-                            2)}
+                            2),
+                 maxwell.decay.empty() ? nullptr : &maxwell}
     , uniform(
         equation.internal_force.uniform_damping() ||
         (equation.damping.n_branches() == 0 && stiffness_coefficient == 0.))

@@ -25,10 +25,11 @@ namespace Voussoir
   struct PointStep
   {
     // [s]; by default laws have no viscosity
-    double length            = std::numeric_limits<double>::max();
-    double closing_viscosity = 0.; // c of DampedResponse [s]
-    double branches          = 0.; // sum of the D_i of Maxwell damping [1]
-    double relaxation        = 1.; // of the energy of the slowest branch [1]
+    double length              = std::numeric_limits<double>::max();
+    double closing_viscosity   = 0.; // c of DampedResponse [s]
+    double branches            = 0.; // sum of the D_i of Maxwell damping [1]
+    double relaxation          = 1.; // of the energy of the slowest branch [1]
+    const MaxwellStep *maxwell = nullptr; // of these branches
   };
 
 

@@ -40,6 +40,8 @@ namespace Voussoir
     double                    mesh_viscosity    = 0.06;
     std::vector<unsigned int> modes;
 
+    static constexpr unsigned int most_branches = 6;
+
     void
     declare(dealii::ParameterHandler &prm);
 

@@ -442,7 +442,8 @@ namespace Voussoir
     {
       const DampedResponse<Law> response(law,
                                          cells.stress_factor,
-                                         damping_factor * motion.branches);
+                                         damping_factor,
+                                         motion.branches);
       InelasticEnergy           total(cells.exact_sums);
       with_cells(cells, [&](auto &&cell) {
         std::decay_t<decltype(cell)> cell_static(cells.matrix_free);

@@ -167,7 +167,8 @@ namespace Voussoir
       const PointStep          &step          = input.step;
       const DampedResponse<Law> response(law,
                                          stress_factor,
-                                         damping_factor * step.branches);
+                                         damping_factor,
+                                         step.branches);
       const auto               &matrix_free = cells.matrix_free;
       const bool damped = input.damping != SweepInput::Damping::none;
       with_cells(cells, [&](auto &&cell) {

@@ -9,6 +9,14 @@
 
 namespace Voussoir
 {
+  /** Internal variables of a point of a law: its own, and filters of its
+   *  plastic strain for each branch of Maxwell damping. */
+  template <typename Law>
+  inline constexpr unsigned int
+    n_history_of = Law::n_history +
+                   (Law::flows ? 6 * DampingParameters::most_branches : 0);
+
+
   /**
    * Response of a point of a law with internal variables under a damping
    * model. With
@@ -21,7 +29,9 @@ namespace Voussoir
    * - e_0: strain offset [1] by static factor and temperature,
    * - e_s: elastic strain of the static state [1], on which damping does not
    *   act,
-   * - e_p: plastic strain of the law [1],
+   * - e_p: plastic strain of the law [1], of which the branches of Maxwell
+   *   damping feel nothing: w is filtered from B u - e_p where a law reports
+   *   its flow,
    * - r: share of the stiffness that damage has left before this step [1],
    *
    * the strain passed to the law is the one whose elastic stress is the total
@@ -76,14 +86,17 @@ namespace Voussoir
   {
   public:
     /** @param stress_factor k
-     *  @param branches s sum D_i of Maxwell damping [1]; 0 if there is none, or
+     *  @param damping_factor s
+     *  @param branches sum D_i of Maxwell damping [1]; 0 if there is none, or
      *   where only static states are computed */
     DampedResponse(const Law   &law,
                    const double stress_factor,
-                   const double branches = 0.)
+                   const double damping_factor = 1.,
+                   const double branches       = 0.)
       : law(law)
       , k(stress_factor)
-      , memory_factor(k + (branches > 0. ? k / branches : 0.))
+      , s(damping_factor)
+      , memory_factor(k + (s * branches > 0. ? k / (s * branches) : 0.))
     {}
 
     /** Strain whose elastic stress is the constant difference between the
@@ -134,9 +147,13 @@ namespace Voussoir
           elastic_static = history.static_strain(batch, q);
           of_law_alone   = elastic_offset(batch, q, history);
         }
-      const SymmetricTensor3<Lanes> filter = filtered - own_strain;
-      now.strain                           = own_strain;
-      now.law_strain                       = own_strain + offset +
+      Lanes                  *values = history.values(batch, q);
+      SymmetricTensor3<Lanes> filter = filtered - own_strain;
+      if constexpr (Law::flows)
+        if (step.maxwell != nullptr)
+          filter -= filter_of_flow(values, step);
+      now.strain     = own_strain;
+      now.law_strain = own_strain + offset +
                        (modulus(last.share) - 1.) *
                          (own_strain - last.plastic - elastic_static) +
                        modulus(last.share) * fourth_power(last.share) * filter;
@@ -147,7 +164,6 @@ namespace Voussoir
                                       history.tip_strength(batch)};
       if (history.has_planes())
         take_planes(history.planes_of(batch), last, now, situation);
-      Lanes     *values   = history.values(batch, q);
       const auto response = law.respond(now.law_strain, values, situation);
       now.share           = response.damping_share;
       now.plastic         = now.law_strain - response.elastic_strain;
@@ -155,6 +171,10 @@ namespace Voussoir
 
       const Lanes begins =
         find_beginning(last, level, history.lanes_are_alone(), values, now);
+
+      if constexpr (Law::flows)
+        if (step.maxwell != nullptr)
+          add_flow(response.plastic_increment, now, values, step);
 
       const SymmetricTensor3<Lanes> change = own_strain - last.strain;
       if (was_active)
@@ -563,10 +583,45 @@ namespace Voussoir
         zero);
     }
 
+    /** Decays the filters of the plastic strain, one of each branch after the
+     *  internal variables of the law, and returns their sum. */
+    static SymmetricTensor3<Lanes>
+    filter_of_flow(Lanes *values, const PointStep &step)
+    {
+      SymmetricTensor3<Lanes> sum;
+      Lanes                  *filter = values + Law::n_history;
+      for (const double decay : step.maxwell->decay)
+        for (unsigned int i = 0; i < 6; ++i, ++filter)
+          {
+            *filter *= decay;
+            sum.access_raw_entry(i) += *filter;
+          }
+      return sum;
+    }
+
+    /** Adds the plastic strain of a step to these filters, where a point has
+     *  left the elastic range; they act from the next step on. */
+    void
+    add_flow(const SymmetricTensor3<Lanes> &increment,
+             const ActivePoint             &now,
+             Lanes                         *values,
+             const PointStep               &step) const
+    {
+      Lanes *filter = values + Law::n_history;
+      for (const double gain : step.maxwell->gain)
+        for (unsigned int i = 0; i < 6; ++i, ++filter)
+          *filter +=
+            dealii::compare_and_apply_mask<dealii::SIMDComparison::equal>(
+              now.band,
+              Lanes(0.),
+              Lanes(0.),
+              s * gain / step.length * increment.access_raw_entry(i));
+    }
+
     static constexpr double round_off = 1e-9;
 
     const Law   &law;
-    const double k, memory_factor;
+    const double k, s, memory_factor;
   };
 } // namespace Voussoir
 

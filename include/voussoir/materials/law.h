@@ -70,6 +70,10 @@ namespace Voussoir
     /** Internal variables of a point. */
     static constexpr unsigned int n_history = 0;
 
+    /** Whether the law reports its plastic flow, on which the branches of
+     *  Maxwell damping do not act. */
+    static constexpr bool flows = false;
+
     /** Whether the law has no directions of its own. */
     static constexpr bool isotropic = true;
 

@@ -170,7 +170,7 @@ namespace Voussoir
     unsigned int
     n_history() const override
     {
-      return Law::n_history;
+      return n_history_of<Law>;
     }
 
     void

@@ -14,6 +14,7 @@ namespace Voussoir
   struct PerfectPlasticity : IsotropicElasticity, CohesionAndFriction
   {
     static constexpr unsigned int n_history = 7;
+    static constexpr bool         flows     = true;
 
     double dilation_angle = 10.;   // psi [degrees]
     double cut_off        = 0.5e6; // [Pa]

@@ -170,7 +170,7 @@ namespace Voussoir
   ParameterFile::with(const std::vector<std::string> &changes) const
   {
     ParameterFile copy = *this;
-    ++copy.n_sets_of_changes;
+    ++copy.highest_level;
     copy.change(changes);
     return copy;
   }
@@ -209,7 +209,7 @@ namespace Voussoir
                           "--set \"Section/Entry=value\".");
         const Value value{trim(item.substr(equals + 1)),
                           "--set \"" + item + "\"",
-                          n_sets_of_changes};
+                          highest_level};
         const auto  path = join_path(split_list(item.substr(0, equals), '/'));
         if (!is_utf8(item))
           throw UserError(value.place + " is not written in UTF-8.");
@@ -225,6 +225,7 @@ namespace Voussoir
   ParameterFile::read(const std::string       &filename,
                       std::vector<std::string> includers)
   {
+    const int level = -int(includers.size());
     includers.push_back(filename);
     ParameterFile            included;
     std::istringstream       in(read_text(filename));
@@ -248,7 +249,7 @@ namespace Voussoir
                               std::to_string(deepest_section) +
                               " other sections; close those before with "
                               "\"end\".");
-            sections.emplace(join_path(section), place);
+            sections.emplace(join_path(section), Value{"", place, level});
           }
         else if (keyword == "end" && rest.empty())
           {
@@ -286,7 +287,7 @@ namespace Voussoir
               }
             if (values.count(path) > 0)
               refuse_second(path, place, "in " + values[path].place);
-            values[path] = {trim(rest.substr(equals + 1)), place};
+            values[path] = {trim(rest.substr(equals + 1)), place, level};
             refuse_second_equals(path, values[path].text, place);
           }
         else
@@ -318,40 +319,32 @@ namespace Voussoir
 
 
   bool
-  ParameterFile::is_replaced(const std::string &entry,
-                             const std::string &place,
-                             const unsigned int set_of_changes) const
+  ParameterFile::is_replaced(const std::string &entry, const int level) const
   {
-    // the file, or --set
-    const auto source = [](const std::string &text) {
-      return text.rfind("--set", 0) == 0 ? "--set" :
-                                           text.substr(0, text.rfind(", line"));
-    };
-    const auto now = values.find(entry);
-    return replaced.count(entry) > 0 &&
-           (source(now->second.place) != source(place) ||
-            now->second.set_of_changes > set_of_changes);
+    return replaced.count(entry) > 0 && values.at(entry).level > level;
   }
 
 
   std::string
-  ParameterFile::cause_of_no_use(const std::string &path,
-                                 const std::string &place,
-                                 const unsigned int set_of_changes) const
+  ParameterFile::cause_of_no_use(const std::string &path, const int level) const
   {
+    const auto names_in = [](const std::string &list, const std::string &name) {
+      const auto names = split_list(list);
+      return std::find(names.begin(), names.end(), name) != names.end();
+    };
     for (std::string part = path; !part.empty(); part = section_of(part))
       {
         const std::string section = section_of(part);
         for (const std::string entry : {"Class", "Law"})
-          if (is_replaced(section + "/" + entry, place, set_of_changes))
+          if (is_replaced(section + "/" + entry, level))
             return section + "/" + entry;
         for (const std::string entry : {"Names", "Type"})
           if (const std::string chooser = section + "/" + entry;
-              is_replaced(chooser, place, set_of_changes))
+              is_replaced(chooser, level) &&
+              !names_in(given(chooser), entry_of(part)))
             for (const std::string &before : replaced.at(chooser))
-              for (const std::string &name : split_list(before))
-                if (name == entry_of(part))
-                  return chooser;
+              if (names_in(before, entry_of(part)))
+                return chooser;
       }
     return "";
   }
@@ -388,37 +381,31 @@ namespace Voussoir
                       known_names(entry_of(section), siblings) + cause + ".");
     };
     std::vector<std::string> notes;
-    const auto               is_left_out = [&](const std::string &what,
-                                 const std::string &path,
-                                 const std::string &place,
-                                 const unsigned int set_of_changes = 0) {
-      const std::string cause = cause_of_no_use(path, place, set_of_changes);
-      if (!cause.empty())
-        notes.push_back(what + " is not used, as \"" + entry_of(cause) + "\" " +
-                        section_text(section_of(cause)) + " is now \"" +
-                        given(cause) + "\"");
-      return !cause.empty();
-    };
-    for (const auto &[section, place] : sections)
+    const auto               is_left_out =
+      [&](const std::string &what, const std::string &path, const int level) {
+        const std::string cause = cause_of_no_use(path, level);
+        if (!cause.empty())
+          notes.push_back(what + " is not used, as \"" + entry_of(cause) +
+                          "\" " + section_text(section_of(cause)) +
+                          " is now \"" + given(cause) + "\"");
+        return !cause.empty();
+      };
+    for (const auto &[section, begun] : sections)
       if (declared_sections.count(section) == 0 &&
-          !is_left_out("section \"" + section + "\"", section, place))
-        refuse_section(section, place);
+          !is_left_out("section \"" + section + "\"", section, begun.level))
+        refuse_section(section, begun.place);
 
     for (const auto &[path, value] : values)
       if (declared.count(path) == 0)
         {
           // a note on the section covers its entries
           if (declared_sections.count(section_of(path)) == 0 &&
-              !cause_of_no_use(section_of(path),
-                               value.place,
-                               value.set_of_changes)
-                 .empty())
+              !cause_of_no_use(section_of(path), value.level).empty())
             continue;
           if (is_left_out("entry \"" + entry_of(path) + "\" " +
                             section_text(section_of(path)),
                           path,
-                          value.place,
-                          value.set_of_changes))
+                          value.level))
             continue;
           const std::string section = section_of(path);
           if (declared_sections.count(section) == 0)

@@ -201,19 +201,24 @@ namespace Voussoir
       const auto      &damping    = model.parameters.damping;
       if (damping.model == DampingModel::none)
         return;
-      // by level, which several faces share
-      std::map<double, double> damped_times;
-      for (const SideFace &face : model.boundary.side_faces())
-        {
-          const Material &material = *model.solid.materials[face.material];
-          damped_times[face.lower] =
-            damping.ratio * material.damping_factor() *
-            (face.upper - face.lower) /
-            material.elastic_constants().s_wave_speed();
-        }
-      double exponent = 0.;
-      for (const auto &level : damped_times)
-        exponent += 2. * numbers::PI * frequency * level.second;
+      std::vector<SideFace> faces = model.boundary.side_faces();
+      std::sort(faces.begin(),
+                faces.end(),
+                [](const SideFace &one, const SideFace &other) {
+                  return one.lower < other.lower;
+                });
+      // each height once, as faces side by side may begin at different heights
+      double exponent = 0., reached = std::numeric_limits<double>::lowest();
+      for (const SideFace &face : faces)
+        if (face.upper > reached)
+          {
+            const Material &material = *model.solid.materials[face.material];
+            exponent += 2. * numbers::PI * frequency * damping.ratio *
+                        material.damping_factor() *
+                        (face.upper - std::max(face.lower, reached)) /
+                        material.elastic_constants().s_wave_speed();
+            reached = face.upper;
+          }
       const double share =
         Utilities::MPI::max(-std::expm1(-exponent), log.communicator());
       if (share > noteworthy)

@@ -19,7 +19,6 @@ namespace Voussoir
     const std::set<std::string>
       moduli{"Young's modulus", "E1", "E2", "E3", "G12", "G13", "G23"},
       strengths{"Cohesion",
-                "Residual cohesion",
                 "Strength",
                 "Tensile strength",
                 "Compressive strength",
@@ -100,6 +99,14 @@ namespace Voussoir
         prm.print_parameters(text, ParameterHandler::JSON);
         const auto entries = nlohmann::json::parse(text.str());
         std::map<std::string, std::string> values;
+        for (const auto &[entry, item] :
+             entries.at("Materials").at(name).items())
+          if (field.strength_variation > 0. && item.contains("value") &&
+              item.at("value") == "table")
+            throw UserError("\"Strength variation\" in section \"" + section +
+                            "/Random field\" does not vary a table; choose "
+                            "another \"" +
+                            entry + "\".");
         for (const auto &[entry, item] :
              entries.at("Materials").at(name).items())
           if (item.contains("value") && item.at("value").is_string() &&

@@ -16,11 +16,14 @@ namespace Voussoir
   namespace
   {
     /** A text without characters that folder names cannot have, and cut to
-     *  their largest length. */
+     *  their largest length; a checksum tells apart what is then alike, as
+     *  "t*2" and "t^2". */
     std::string
     folder_name(const std::string &text)
     {
       constexpr std::size_t longest = 150;
+      const std::string     without_sense("-_ =/'");
+      bool                  is_alone = true;
       std::string           name;
       for (const char letter : text)
         if (std::isalnum(static_cast<unsigned char>(letter)) || letter == '.' ||
@@ -28,9 +31,14 @@ namespace Voussoir
           name += letter;
         else if (letter == ',')
           name += '_';
-        else if (!name.empty() && name.back() != '-' && name.back() != '_')
-          name += '-';
-      if (name.size() > longest)
+        else
+          {
+            is_alone =
+              is_alone && without_sense.find(letter) != std::string::npos;
+            if (!name.empty() && name.back() != '-' && name.back() != '_')
+              name += '-';
+          }
+      if (name.size() > longest || !is_alone)
         name = name.substr(0, longest) + "-" + checksum(text);
       return name.empty() ? "run" : name;
     }
@@ -93,7 +101,8 @@ namespace Voussoir
         for (const double value : {parameters.from, parameters.to})
           {
             StudyValues with = values;
-            with.emplace_back(parameters.varied_to_limit, number_text(value));
+            with.emplace_back(parameters.varied_to_limit,
+                              number_text(value, fine_digits));
             result.push_back(file_of(with));
           }
     return result;

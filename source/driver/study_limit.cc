@@ -6,7 +6,8 @@ namespace Voussoir
   bool
   Study::is_met(StudyValues values, const double value)
   {
-    values.emplace_back(parameters.varied_to_limit, number_text(value));
+    values.emplace_back(parameters.varied_to_limit,
+                        number_text(value, fine_digits));
     const Outcome     outcome = outcome_of(values);
     const RunSummary &summary = outcome.summary;
     const std::string where =
@@ -59,8 +60,9 @@ namespace Voussoir
           refuse(limit.fails, "met already");
         limit.meets = limit.fails;
         // values that begin above zero stay positive
-        limit.fails =
-          limit.fails > span ? limit.fails - span : 0.5 * limit.fails;
+        limit.fails = limit.fails > 0. && limit.fails <= span ?
+                        0.5 * limit.fails :
+                        limit.fails - span;
       }
     for (unsigned int i = 0;
          limit.fails >= parameters.from && limit.meets >= parameters.to &&

@@ -239,7 +239,7 @@ namespace Voussoir
       "Measured numbers, separated by semicolons, \"PATH = VALUE\" by their "
       "paths in summary.json, as \"modes/modes/0/frequency [Hz] = 5.45\", at "
       "least as many as fitted entries. The search minimises the sum of the "
-      "squares of the relative differences.");
+      "squares of the logarithms of computed over measured numbers.");
     prm.add_parameter(
       "Error",
       measurement_error,

@@ -146,7 +146,7 @@ namespace Voussoir
                            std::max(known_loss, share_that_counts * came_in);
     if (n > 1 && change > allowed)
       steps_between = n / 2;
-    else if (n > 0 && 4. * change <= allowed)
+    else if (n > 0 && 4. * change < allowed) // not before something moves
       steps_between = std::min(most_steps, std::max(steps_between, 2 * n));
     known_loss = loss;
     next_loss  = next;

@@ -138,6 +138,18 @@ namespace Voussoir
                        std::abs(settlement / uniform - 1.),
                        0.001);
 
+        const auto cracking =
+          make_case(file.with({"Materials/stone/Class=rock damage",
+                               "Materials/stone/Random field/"
+                               "Strength variation=0.4",
+                               "Materials/stone/Cohesion=1e6",
+                               "Materials/stone/Residual cohesion=0.9"}));
+        verdicts.is_true("the cohesion varies, its share that remains does not",
+                         cracking->file.given(
+                           "Materials/stone 16/Residual cohesion") == "0.9" &&
+                           cracking->file.given(
+                             "Materials/stone 16/Cohesion") != "1e6");
+
         // the file that the run has written gives the same model
         std::ostringstream text;
         parameters->prm.print_parameters(text, ParameterHandler::ShortText);

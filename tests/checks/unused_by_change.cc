@@ -43,6 +43,10 @@ namespace Voussoir
                                                "Interfaces/other/Law="
                                                "friction"})));
 
+        verdicts.is_true("an unknown entry in a later set of changes: refused",
+                         is_refused(file.with({law}).with(
+                           {"Interfaces/plane/Tensile strenght=1"})));
+
         std::ofstream("unused_including.prm")
           << "include " << file.resolve("unused_by_change.prm")
           << "\nsubsection Interfaces\n  subsection plane\n"
@@ -50,6 +54,17 @@ namespace Voussoir
         verdicts.same_text("in a file that is included",
                            only_note(ParameterFile("unused_including.prm")),
                            note);
+
+        std::ofstream("misspelt_below.prm")
+          << "include " << file.resolve("unused_by_change.prm")
+          << "\nsubsection Interfaces\n  set Names = plane, other\n"
+             "  subsection plane\n    set Lawe = friction\n  end\nend\n";
+        std::ofstream("misspelt_above.prm")
+          << "include misspelt_below.prm\nsubsection Interfaces\n"
+             "  set Names = plane\nend\n";
+        verdicts.is_true(
+          "an unknown entry of a section that \"Names\" keeps: refused",
+          is_refused(ParameterFile("misspelt_above.prm")));
 
         for (const std::string name : {"crest", "heel"})
           std::ofstream(name + "_criterion.prm")

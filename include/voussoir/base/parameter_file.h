@@ -82,9 +82,12 @@ namespace Voussoir
   private:
     struct Value
     {
-      std::string  text;
-      std::string  place; // "case.prm, line 12" or "--set"
-      unsigned int set_of_changes = 0;
+      std::string text;
+      std::string place; // "case.prm, line 12" or "--set"
+
+      // values of a higher level take precedence: 0 in the file, -1 in those
+      // that it includes, -2 in theirs; 1 from --set, 2 and more by `with`
+      int level = 0;
     };
 
     /** Entries of a file take precedence over those of the files that it
@@ -96,31 +99,23 @@ namespace Voussoir
     void
     change(const std::vector<std::string> &changes);
 
-    /** Whether a later place, in another file, --set or a later set of
-     *  changes, has changed the value that an entry had at this place. */
+    /** Whether a higher level has changed the value of an entry. */
     bool
-    is_replaced(const std::string &entry,
-                const std::string &place,
-                const unsigned int set_of_changes) const;
+    is_replaced(const std::string &entry, const int level) const;
 
-    /** The entry whose change makes a section or an entry unused; "" if there
-     *  is none.
-     *  @param path  of the section or the entry
-     *  @param place where it stands
-     *  @param set_of_changes that gave it */
+    /** The entry whose change makes a section or an entry of this level unused;
+     *  "" if there is none. */
     std::string
-    cause_of_no_use(const std::string &path,
-                    const std::string &place,
-                    const unsigned int set_of_changes = 0) const;
+    cause_of_no_use(const std::string &path, const int level) const;
 
     std::string                  filename;
     std::map<std::string, Value> values; // by "Section/Subsection/Entry"
-    unsigned int n_sets_of_changes = 0;  // by `with`, after --set
+    int                          highest_level = 1;
 
     // replaced texts of the entries; "" stands for the default value
     std::map<std::string, std::vector<std::string>> replaced;
 
-    std::map<std::string, std::string> sections; // path and place
+    std::map<std::string, Value> sections; // by path, without text
   };
 
   /** Parts of a comma-separated list, without the blanks around them. */

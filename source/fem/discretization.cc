@@ -36,7 +36,9 @@ namespace Voussoir
       "cracks, full integration or several cells through the wall are needed. "
       "\"One point where elastic\" has one point in materials that stay "
       "elastic and Gauss points in those that crack or yield: for a dam in a "
-      "large rock mass. The mass is always lumped at the Gauss-Lobatto nodes.");
+      "large rock mass. Gauss-Lobatto points at degree 1 are exact in cells "
+      "with parallel sides only: in irregular cells a uniform stress errs by up "
+      "to a tenth. The mass is always lumped at the Gauss-Lobatto nodes.");
     add_option(
       prm,
       "Sums",

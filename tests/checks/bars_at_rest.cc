@@ -54,6 +54,33 @@ namespace Voussoir
                           1e3 * opening,
                           1e-3);
           }
+
+        // a part that the bars alone hold
+        const double pull =
+          0.8 * ratio * entry("Interfaces/joint/Yield stress");
+        const auto held = make_case(
+          file.with({"Loads/Names=pull",
+                     "Loads/pull/Class=surface load",
+                     "Loads/pull/Face sets=top",
+                     "Loads/pull/Traction=0, 0, " + std::to_string(pull),
+                     "Static state/Stages=pull",
+                     "Boundaries/Roller=bottom, left, front"}));
+        const auto        simulation = make_simulation(*held, communicator);
+        const ContactSums sums       = contact_sums(*simulation, 0);
+        verdicts.above("pulled: steps of dynamic relaxation",
+                       simulation->static_state.summary.at("stages")
+                         .at(0)
+                         .at("steps of dynamic relaxation")
+                         .get<double>(),
+                       1.);
+        verdicts.near("  opening [mm]",
+                      1e3 * sums.opening,
+                      1e3 * pull / stiffness,
+                      1e-3);
+        verdicts.near("  force of the bars [MN]",
+                      -1e-6 * sums.given,
+                      1e-6 * area * pull,
+                      1e-3);
       }
 
       void

@@ -112,26 +112,25 @@ namespace Voussoir
   double
   CrackOpening::now_at(const unsigned int q) const
   {
-    const ActivePoint &point = history.active_point(place.batch, q);
-    const Lanes across       = point.normal * (point.law_strain * point.normal),
-                traction     = point.normal * (point.stress * point.normal);
     const ElasticConstants elastic =
       solid.materials[material]->elastic_constants();
-    // less what would make the traction compressive across a closed crack
-    const double strain_across =
-      across[place.lane] +
-      std::min(traction[place.lane], 0.) / elastic.young_modulus;
-    if (!(strain_across > 0.))
-      return 0.;
-    const auto strain = history.inelastic_strain(place,
+    const auto   strain = history.inelastic_strain(place,
                                                  q,
                                                  elastic.young_modulus,
                                                  elastic.poisson_ratio);
+    const auto  &lanes  = history.active_point(place.batch, q).normal;
+    Tensor<1, 3> normal;
+    for (unsigned int d = 0; d < 3; ++d)
+      normal[d] = lanes[d][place.lane];
+    const double across = normal * (strain * normal);
+    const auto   stress =
+      lane_of(history.active_point(place.batch, q).stress, place.lane);
+    // at 30 degrees to the stress an open crack still has less than this share
+    constexpr double closed = 0.01;
+    if (normal * (stress * normal) < -closed * elastic.young_modulus * across)
+      return 0.;
     return std::max(0.,
-                    std::min(largest_at(q),
-                             history.band(place, q) *
-                               std::min(strain_across,
-                                        eigenvalues(strain)[0])));
+                    std::min(largest_at(q), history.band(place, q) * across));
   }
 
 

@@ -51,12 +51,12 @@ namespace Voussoir
       return solid.discretization.degree > 1;
     }
 
-    /** At the last step [m]: the band times the largest principal value of e_in
-     *  = e - C^-1 : sigma or, if that is less, of the strain across the crack
-     *  n . e . n + <n . sigma . n>_- / E ; at most the largest opening so far.
-     *  Where the latter is negative the crack is closed, even if shear along an
-     *  inclined strut gives an opening; the expansion of crushed concrete is no
-     *  crack. */
+    /** At the last step [m]: the band times the inelastic strain across the
+     *  crack, n . e_in . n with e_in = e - C^-1 : sigma ; at most the largest
+     *  opening so far. Zero where the traction is compressive by more than a
+     *  hundredth of E times this strain: the crack is closed, even if shear
+     *  along an inclined strut gives a strain across, and the expansion of
+     *  crushed concrete is no crack. */
     double
     now() const;
 

@@ -10,8 +10,7 @@ namespace Voussoir
      * A rod between fixed ends with bars across a joint, that cools: with the
      * opening w, the stress of the rod s and its static modulus a E,
      *   w + L (alpha T + s / (a E)) = 0 , s = r min(f_y, E_s w / l) ,
-     * and r, f_y, E_s, l of the bars. It warms again until the bars yield in
-     * compression, or not.
+     * and r, f_y, E_s, l of the bars; and a part that the bars alone hold.
      */
     class BarsAtRest : public Check
     {
@@ -21,23 +20,22 @@ namespace Voussoir
           Verdicts            &verdicts,
           const MPI_Comm       communicator) override
       {
-        const auto entry = [&](const std::string &name) {
-          return std::stod(file.given(name));
-        };
-        const double L = entry("Check/Length"), area = entry("Check/Area"),
-                     modulus = entry("Materials/stone/Young's modulus") *
-                               entry("Materials/stone/Static factor"),
-                     strain = -entry("Materials/stone/Thermal expansion") *
-                              entry("Loads/cold/Uniform change"),
-                     ratio     = entry("Interfaces/joint/Steel ratio"),
-                     stiffness = ratio *
-                                 entry("Interfaces/joint/Steel modulus") /
-                                 entry("Interfaces/joint/Free length");
+        const double modulus =
+                       number_in(file, "Materials/stone/Young's modulus") *
+                       number_in(file, "Materials/stone/Static factor"),
+                     strain =
+                       -number_in(file, "Materials/stone/Thermal expansion") *
+                       number_in(file, "Loads/cold/Uniform change"),
+                     ratio = number_in(file, "Interfaces/joint/Steel ratio"),
+                     stiffness =
+                       ratio *
+                       number_in(file, "Interfaces/joint/Steel modulus") /
+                       number_in(file, "Interfaces/joint/Free length");
         for (const double yield : {10e6, 30e6, 40e6, 1000e6})
           {
             const double opening =
-              std::max(strain * L / (1. + stiffness * L / modulus),
-                       L * (strain - ratio * yield / modulus));
+              std::max(strain * length / (1. + stiffness * length / modulus),
+                       length * (strain - ratio * yield / modulus));
             const double force =
               area * std::min(stiffness * opening, ratio * yield);
             const auto parameters  = make_case(file.with(
@@ -55,9 +53,8 @@ namespace Voussoir
                           1e-3);
           }
 
-        // a part that the bars alone hold
         const double pull =
-          0.8 * ratio * entry("Interfaces/joint/Yield stress");
+          0.8 * ratio * number_in(file, "Interfaces/joint/Yield stress");
         const auto held = make_case(
           file.with({"Loads/Names=pull",
                      "Loads/pull/Class=surface load",

@@ -110,15 +110,12 @@ namespace Voussoir
           Verdicts            &verdicts,
           const MPI_Comm       communicator) override
       {
-        const auto number = [&](const std::string &entry) {
-          return std::stod(file.given(entry));
-        };
-        const double nu     = number("Materials/concrete/Poisson's ratio"),
-                     E      = number("Materials/concrete/Young's modulus"),
-                     rho    = number("Materials/concrete/Density"),
-                     L      = number("Mesh/row/Length"),
-                     H      = number("Mesh/row/Height"),
-                     q      = number("Loads/water/Pressure");
+        const double nu = number_in(file, "Materials/concrete/Poisson's ratio"),
+                     E  = number_in(file, "Materials/concrete/Young's modulus"),
+                     rho    = number_in(file, "Materials/concrete/Density"),
+                     L      = number_in(file, "Mesh/row/Length"),
+                     H      = number_in(file, "Mesh/row/Height"),
+                     q      = number_in(file, "Loads/water/Pressure");
         const double weight = rho * gravity * L * L * H,
                      thrust_of_weight = nu * 0.5 * rho * gravity * H * H * L,
                      thrust_of_water  = nu * q * H * L;

@@ -116,6 +116,13 @@ namespace Voussoir
     return safety_from_sums(blocks[0], sums.data(), areas, {});
   }
 
+  /** The number that a file gives for an entry. */
+  inline double
+  number_in(const ParameterFile &file, const std::string &path)
+  {
+    return std::stod(file.given(path));
+  }
+
   /** An entry with a vector. */
   inline std::string
   vector_entry(const std::string &name, const dealii::Tensor<1, 3> &value)

@@ -19,15 +19,12 @@ namespace Voussoir
           Verdicts            &verdicts,
           const MPI_Comm       communicator) override
       {
-        const auto entry = [&](const std::string &name) {
-          return std::stod(file.given(name));
-        };
         const std::string section = "Mesh/gravity section/";
-        const double      width   = entry(section + "Base width"),
-                     thickness    = entry(section + "Thickness"),
-                     height       = entry(section + "Height"),
-                     lift         = entry(section + "Lift height");
-        const double weight       = entry("Materials/dam/Density") *
+        const double      width   = number_in(file, section + "Base width"),
+                     thickness    = number_in(file, section + "Thickness"),
+                     height       = number_in(file, section + "Height"),
+                     lift         = number_in(file, section + "Lift height");
+        const double weight       = number_in(file, "Materials/dam/Density") *
                               standard_gravity * width * thickness *
                               (height - lift);
 

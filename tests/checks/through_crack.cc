@@ -7,6 +7,20 @@ namespace Voussoir
 
   namespace
   {
+    /** Runs a case with its files in this folder, and returns the results of
+     * the observer "through cracks". */
+    nlohmann::json
+    through_cracks_of(const ParameterFile &file,
+                      const std::string   &folder,
+                      const MPI_Comm       communicator)
+    {
+      const auto parameters = make_case(file.with({"Output/Folder=" + folder}));
+      make_simulation_with_files(*parameters, communicator)->run.march();
+      MPI_Barrier(communicator);
+      return read_summary(folder).at("through cracks");
+    }
+
+
     /**
      * A block that is pulled by 4 mm sin(pi t)^2, all of which is the opening
      * of its middle layer: from face to face if all cells there are weak,
@@ -20,7 +34,7 @@ namespace Voussoir
           Verdicts            &verdicts,
           const MPI_Comm       communicator) override
       {
-        const auto all_weak = found(file, communicator);
+        const auto all_weak = through_cracks_of(file, folder, communicator);
         verdicts.near("all cells are weak: open from face to face [mm]",
                       all_weak.at(largest),
                       4.,
@@ -50,9 +64,11 @@ namespace Voussoir
                        0.01);
 
         const auto one_sound =
-          found(file.with({"Materials/middle/Tensile strength=1.8e8",
-                           "Materials/middle/Fracture energy=1e7"}),
-                communicator);
+          through_cracks_of(file.with(
+                              {"Materials/middle/Tensile strength=1.8e8",
+                               "Materials/middle/Fracture energy=1e7"}),
+                            folder,
+                            communicator);
         verdicts.near("the middle one is sound: open from face to face [mm]",
                       one_sound.at(largest),
                       0.,
@@ -60,16 +76,6 @@ namespace Voussoir
       }
 
     private:
-      nlohmann::json
-      found(const ParameterFile &file, const MPI_Comm communicator) const
-      {
-        const auto parameters =
-          make_case(file.with({"Output/Folder=" + folder}));
-        make_simulation_with_files(*parameters, communicator)->run.march();
-        MPI_Barrier(communicator);
-        return read_summary(folder).at("through cracks");
-      }
-
       const std::string
         folder  = "through_crack",
         largest = "largest opening from face to face at one moment [mm]";
@@ -91,19 +97,15 @@ namespace Voussoir
           const MPI_Comm       communicator) override
       {
         const std::string folder = "cracks_in_turn";
-        const auto        parameters =
-          make_case(file.with({"Output/Folder=" + folder}));
-        make_simulation_with_files(*parameters, communicator)->run.march();
-        MPI_Barrier(communicator);
-        const CsvTable table(folder + "/through_cracks.csv");
-        double         now = 0., ever = 0.;
+        const auto        found = through_cracks_of(file, folder, communicator);
+        const CsvTable    table(folder + "/through_cracks.csv");
+        double            now = 0., ever = 0.;
         for (const double way :
              table.numbers("opening from face to face now [mm]"))
           keep_largest(now, way);
         for (const double way :
              table.numbers("largest openings ever from face to face [mm]"))
           keep_largest(ever, way);
-        const auto found = read_summary(folder).at("through cracks");
         // struts beside the pressed end open by less
         verdicts.below(
           "open from face to face at one moment, of all lines [mm]", now, 0.01);
@@ -135,13 +137,12 @@ namespace Voussoir
       {
         for (const std::string direction : {"rotating", "fixed"})
           {
-            const std::string folder     = "inclined_crack_" + direction;
-            const auto        parameters = make_case(
-              file.with({"Output/Folder=" + folder,
-                                "Materials/weak/Crack direction=" + direction}));
-            make_simulation_with_files(*parameters, communicator)->run.march();
-            MPI_Barrier(communicator);
-            const auto found = read_summary(folder).at("through cracks");
+            const std::string folder = "inclined_crack_" + direction;
+            const auto        found =
+              through_cracks_of(file.with({"Materials/weak/Crack direction=" +
+                                           direction}),
+                                folder,
+                                communicator);
             verdicts.near(
               direction + ": open from face to face at one moment [mm]",
               found.at("largest opening from face to face at one moment [mm]"),

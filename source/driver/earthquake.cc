@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <iomanip>
-#include <map>
 
 namespace Voussoir
 {

@@ -101,17 +101,18 @@ namespace Voussoir
         std::map<std::string, std::string> values;
         for (const auto &[entry, item] :
              entries.at("Materials").at(name).items())
-          if (field.strength_variation > 0. && item.contains("value") &&
-              item.at("value") == "table")
-            throw UserError("\"Strength variation\" in section \"" + section +
-                            "/Random field\" does not vary a table; choose "
-                            "another \"" +
-                            entry + "\".");
-        for (const auto &[entry, item] :
-             entries.at("Materials").at(name).items())
-          if (item.contains("value") && item.at("value").is_string() &&
-              parse_number(item.at("value").get<std::string>()))
-            values[entry] = item.at("value");
+          {
+            if (!item.contains("value") || !item.at("value").is_string())
+              continue;
+            const std::string value = item.at("value");
+            if (field.strength_variation > 0. && value == "table")
+              throw UserError("\"Strength variation\" in section \"" + section +
+                              "/Random field\" does not vary a table; choose "
+                              "another \"" +
+                              entry + "\".");
+            if (parse_number(value))
+              values[entry] = value;
+          }
         std::vector<std::string> copies, changes;
         for (unsigned int part = 1; part <= field.n_classes; ++part)
           {

@@ -112,19 +112,18 @@ namespace Voussoir
   double
   CrackOpening::now_at(const unsigned int q) const
   {
+    const ActivePoint     &point = history.active_point(place.batch, q);
     const ElasticConstants elastic =
       solid.materials[material]->elastic_constants();
     const auto   strain = history.inelastic_strain(place,
                                                  q,
                                                  elastic.young_modulus,
                                                  elastic.poisson_ratio);
-    const auto  &lanes  = history.active_point(place.batch, q).normal;
     Tensor<1, 3> normal;
     for (unsigned int d = 0; d < 3; ++d)
-      normal[d] = lanes[d][place.lane];
+      normal[d] = point.normal[d][place.lane];
     const double across = normal * (strain * normal);
-    const auto   stress =
-      lane_of(history.active_point(place.batch, q).stress, place.lane);
+    const auto   stress = lane_of(point.stress, place.lane);
     // at 30 degrees to the stress an open crack still has less than this share
     constexpr double closed = 0.01;
     if (normal * (stress * normal) < -closed * elastic.young_modulus * across)

@@ -67,6 +67,9 @@ namespace Voussoir
         verdicts.below("energy that damping returns, over the input",
                        returned / input,
                        1e-3);
+        verdicts.below("largest energy-balance error",
+                       simulation->run.energy.summary().largest_error,
+                       5e-4);
       }
 
     private:

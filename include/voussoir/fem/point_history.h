@@ -330,14 +330,19 @@ namespace Voussoir
     cells() const;
 
     /** Imbalance of the Maxwell branches [J/m3], see DampedResponse, which the
-     *  energy balance stores at elastic points until they leave the elastic
-     *  range; zero before the first balance. */
+     *  energy balance stores; zero before the first balance. */
     Lanes &
     imbalance(const unsigned int batch, const unsigned int q)
     {
       if (imbalances.empty())
         imbalances.resize(active.size());
       return imbalances[index(batch, q)];
+    }
+
+    Lanes
+    imbalance(const unsigned int batch, const unsigned int q) const
+    {
+      return imbalances.empty() ? Lanes(0.) : imbalances[index(batch, q)];
     }
 
     /** Width of the crack band of one point of one cell [m]; zero if it is

@@ -297,7 +297,12 @@ namespace Voussoir
                                      Lanes>)
           for (unsigned int q = 0; q < filter.size(); ++q)
             {
-              const auto strain = cell.get_symmetric_gradient(q);
+              auto strain = cell.get_symmetric_gradient(q);
+              if constexpr (Law::flows)
+                if (damping_factor > 0. && history->is_active(batch, q))
+                  strain -= 1. / damping_factor *
+                            DampedResponse<Law>::filter_of_flow(
+                              history->values(batch, q), branch);
               history->imbalance(batch, q) +=
                 0.5 * cells.stress_factor * damping_factor /
                 motion.damping.coefficients[branch] *

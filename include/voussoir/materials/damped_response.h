@@ -77,7 +77,8 @@ namespace Voussoir
    *   Here j is the imbalance of the branches, the energy that they store above
    *   the least one for their sum w, k w : D : w / (2 s sum D_i). A point
    *   leaves the elastic range with the j of the last energy balance; from then
-   *   on j relaxes like the slowest branch. As long as the law is elastic, this
+   *   on j relaxes like the slowest branch, or is that of the branches where
+   *   the law reports its flow. As long as the law is elastic, this
    *   energy and that of the law are those of the springs of an elastic point:
    *   nothing jumps when a point leaves the elastic range.
    */
@@ -151,7 +152,7 @@ namespace Voussoir
       SymmetricTensor3<Lanes> filter = filtered - own_strain;
       if constexpr (Law::flows)
         if (step.maxwell != nullptr)
-          filter -= filter_of_flow(values, step);
+          filter -= decay_filters_of_flow(values, step);
       now.strain     = own_strain;
       now.law_strain = own_strain + offset +
                        (modulus(last.share) - 1.) *
@@ -347,6 +348,17 @@ namespace Voussoir
       elastic -= point.plastic;
     }
 
+    /** Filter of the plastic strain for one branch of Maxwell damping, times
+     * the damping factor [1]. */
+    static SymmetricTensor3<Lanes>
+    filter_of_flow(const Lanes *values, const unsigned int branch)
+    {
+      SymmetricTensor3<Lanes> filter;
+      for (unsigned int i = 0; i < 6; ++i)
+        filter.access_raw_entry(i) = values[Law::n_history + 6 * branch + i];
+      return filter;
+    }
+
     /** Energies of a point [J/m3]; see InelasticEnergy. */
     struct Energy
     {
@@ -393,11 +405,13 @@ namespace Voussoir
       const Lanes of_law =
         0.5 * (point.stress * (point.law_strain - point.plastic)) -
         stress_then * (0.5 * elastic_then + point.law_strain - law_strain_then);
-      const Lanes damping_energy = (1. / modulus(point.share) - 1.) * of_law +
-                                   filter_energy(point.filter,
-                                                 point.stress - stress_then,
-                                                 point.filter_imbalance,
-                                                 point.share);
+      const Lanes damping_energy =
+        (1. / modulus(point.share) - 1.) * of_law +
+        filter_energy(point.filter,
+                      point.stress - stress_then,
+                      Law::flows ? history.imbalance(batch, q) :
+                                   point.filter_imbalance,
+                      point.share);
       const Lanes stored =
         of_law + damping_energy +
         0.5 * ((point.total_stress() - stress_then) * (strain - point.strain));
@@ -586,7 +600,7 @@ namespace Voussoir
     /** Decays the filters of the plastic strain, one of each branch after the
      *  internal variables of the law, and returns their sum. */
     static SymmetricTensor3<Lanes>
-    filter_of_flow(Lanes *values, const PointStep &step)
+    decay_filters_of_flow(Lanes *values, const PointStep &step)
     {
       SymmetricTensor3<Lanes> sum;
       Lanes                  *filter = values + Law::n_history;

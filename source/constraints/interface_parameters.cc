@@ -187,10 +187,20 @@ namespace Voussoir
       throw UserError("Section \"" + place +
                       "\" has both an \"Initial gap\" and \"Tied after "
                       "grouting\"; leave one of them out.");
+    if (initial_gap > 0. && law->strength({initial_gap, 0.}).tension > 0.)
+      throw UserError("\"Initial gap\" in section \"" + place +
+                      "\" leaves no bond, but that of \"Law\" there would "
+                      "hold across it; set \"Law = friction\" with what the "
+                      "bond leaves, or \"Initial gap = 0\".");
     if (uplift.given() == split_list(uplift.downstream_faces).empty())
       throw UserError("Section \"" + place +
                       "/Uplift\" needs both \"Upstream faces\" and "
                       "\"Downstream faces\", or none of them.");
+    if (uplift.drain_position == 0. && uplift.drain_factor < 1.)
+      throw UserError("\"Drain factor\" in section \"" + place +
+                      "/Uplift\" is below 1, but \"Drain position\" there is "
+                      "0, the upstream faces; give the position of the drains, "
+                      "or leave out the factor.");
     law->check(place);
   }
 

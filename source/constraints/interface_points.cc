@@ -163,12 +163,18 @@ namespace Voussoir
         {
           const std::string place =
             "in section \"Interfaces/" + interfaces.list[i].name + "/Uplift\"";
-          const FaceDistance upstream(discretization.grid,
+          std::vector<std::string> surface;
+          for (unsigned int s = 0; s < names.size(); ++s)
+            if (interface_of_surface[s] == i)
+              surface.push_back(names[s]);
+          const EdgeDistance upstream(discretization.grid,
+                                      surface,
                                       split_list(water.upstream_faces),
-                                      "\"Upstream faces\" " + place);
-          const FaceDistance downstream(discretization.grid,
-                                        split_list(water.downstream_faces),
-                                        "\"Downstream faces\" " + place);
+                                      "\"Upstream faces\" " + place),
+            downstream(discretization.grid,
+                       surface,
+                       split_list(water.downstream_faces),
+                       "\"Downstream faces\" " + place);
           for (unsigned int k = 0; k < points.size(); ++k)
             {
               if (interface_of_surface[points[k].surface] != i)

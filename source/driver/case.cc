@@ -1,6 +1,7 @@
 #include <voussoir/analysis/stage_results.h>
 #include <voussoir/base/active.h>
 #include <voussoir/base/error.h>
+#include <voussoir/base/parameter_entries.h>
 #include <voussoir/base/parameter_section.h>
 #include <voussoir/base/section_names.h>
 #include <voussoir/base/text.h>
@@ -157,6 +158,38 @@ namespace Voussoir
                                          shape + "\"");
         }
     }
+
+
+    /** Notes entries of waves that a rigid base or a vertical wave does not
+     * use.
+     */
+    void
+    note_unused_wave(Case &parameters)
+    {
+      const WaveParameters     &wave = parameters.wave;
+      std::vector<const char *> entries;
+      std::string               cause;
+      if (wave.enters_through == WaveEntrance::rigid_base)
+        {
+          entries = {"Wave field/Type",
+                     "Wave field/Angle",
+                     "Wave field/Azimuth",
+                     "Wave field/Maximum frequency",
+                     "Ground motion/Given at"};
+          cause   = "\"Enters through\" in section \"Wave field\" is \"rigid "
+                    "base\", which moves as given";
+        }
+      else if (wave.type == WaveType::vertical)
+        {
+          entries = {"Wave field/Angle", "Wave field/Azimuth"};
+          cause   = "\"Type\" there is \"vertical\"";
+        }
+      for (const std::string entry : entries)
+        if (!parameters.file.given(entry).empty())
+          parameters.notes.push_back("\"" + entry_of(entry) +
+                                     "\" in section \"" + section_of(entry) +
+                                     "\" is not used, as " + cause);
+    }
   } // namespace
 
 
@@ -178,6 +211,7 @@ namespace Voussoir
     add_points_of_histories(*this);
     note_unused_crack_friction(*this);
     note_unused_spectrum(*this);
+    note_unused_wave(*this);
     check();
     for (const std::string &warning : ground_motion.warnings())
       warnings.push_back(warning);

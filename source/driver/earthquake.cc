@@ -357,6 +357,16 @@ namespace Voussoir
       for (const auto &component : signals)
         if (component && std::isinf(component->end()))
           followed_to = end_time;
+    for (const unsigned int m : model.boundary.materials_at_boundary())
+      if (!model.solid.materials[m]->isotropic())
+        throw UserError("The earthquake of section \"Ground motion\" enters "
+                        "through an absorbing boundary of \"" +
+                        parameters.materials.objects[m].first +
+                        "\", whose stiffness depends on the direction; free "
+                        "field and dashpots are those of isotropic rock: give "
+                        "the cells at the boundary such a material, or set "
+                        "\"Enters through = rigid base\" in section \"Wave "
+                        "field\".");
     check_wave(model.boundary,
                model.solid,
                parameters.wave,

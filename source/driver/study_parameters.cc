@@ -481,6 +481,29 @@ namespace Voussoir
   }
 
 
+  NamedNumbers
+  StudyParameters::named_numbers() const
+  {
+    NamedNumbers result;
+    if (!quantities.empty())
+      for (const SummaryNumber &number : numbers())
+        result.emplace_back(number, "\"Quantities\" in section \"Study\"");
+    for (const auto &[section, criteria] :
+         {std::pair("Limit", this->criteria()),
+          std::pair("Fragility", fragility_criteria())})
+      for (const Criterion &criterion : criteria)
+        if (criterion.about() != nullptr)
+          result.emplace_back(*criterion.about(),
+                              std::string("\"Criterion\" in section "
+                                          "\"Study/") +
+                                section + "\"");
+    for (const auto &number : measured_numbers())
+      result.emplace_back(number.first,
+                          "\"Measured\" in section \"Study/Calibration\"");
+    return result;
+  }
+
+
   std::vector<SummaryNumber>
   StudyParameters::numbers() const
   {

@@ -165,6 +165,9 @@ namespace Voussoir
                                    std::string()));
       }
     outcomes.emplace_back(values, run_folder, summary);
+    // a misspelt path shows after the first run, not after the last one
+    if (summary.end == RunEnd::complete)
+      check_numbers(parameters.named_numbers(), summary);
     return outcomes.back();
   }
 

@@ -1,5 +1,6 @@
 #include <voussoir/base/error.h>
 #include <voussoir/base/parse_numbers.h>
+#include <voussoir/base/text.h>
 #include <voussoir/driver/run_summary.h>
 #include <voussoir/driver/summary_numbers.h>
 
@@ -57,6 +58,20 @@ namespace Voussoir
             visit(value, &part, names, way, action);
             way.pop_back();
           }
+    }
+
+
+    /** Paths of all numbers of a summary. */
+    void
+    add_paths(const nlohmann::json     &part,
+              const std::string        &path,
+              std::vector<std::string> &paths)
+    {
+      if (!part.is_structured())
+        paths.push_back(path);
+      else
+        for (const auto &[name, child] : part.items())
+          add_paths(child, path.empty() ? name : path + "/" + name, paths);
     }
 
 
@@ -186,6 +201,26 @@ namespace Voussoir
             any = any || value.is_number() || value.is_null();
           });
     return any;
+  }
+
+
+  void
+  check_numbers(const NamedNumbers &wanted, const nlohmann::json &summary)
+  {
+    std::vector<std::string> known;
+    add_paths(summary, "", known);
+    for (const auto &[number, entry] : wanted)
+      {
+        if (number.is_in(summary))
+          continue;
+        const std::string closest = closest_match(number.path, known);
+        throw UserError(
+          entry + " names \"" + number.path +
+          "\", which the summary of this case will not have" +
+          (closest.empty() ? "" : " (did you mean \"" + closest + "\"?)") +
+          "; take a number that it has, or add the observer that "
+          "gives it.");
+      }
   }
 
 

@@ -1,7 +1,5 @@
 #include <voussoir/analysis/measured_shapes.h>
 #include <voussoir/analysis/static_outline.h>
-#include <voussoir/base/error.h>
-#include <voussoir/base/text.h>
 #include <voussoir/driver/summary_preview.h>
 #include <voussoir/driver/verdict_tables.h>
 
@@ -16,20 +14,6 @@ namespace Voussoir
 
   namespace
   {
-    /** Paths of all numbers of a summary. */
-    void
-    add_paths(const nlohmann::json     &part,
-              const std::string        &path,
-              std::vector<std::string> &paths)
-    {
-      if (!part.is_structured())
-        paths.push_back(path);
-      else
-        for (const auto &[name, child] : part.items())
-          add_paths(child, path.empty() ? name : path + "/" + name, paths);
-    }
-
-
     nlohmann::json
     outline_of(const Model &model)
     {
@@ -91,45 +75,13 @@ namespace Voussoir
   {
     const Case &parameters = run.model.parameters;
 
-    // paths and the entries that name them
-    std::vector<std::pair<SummaryNumber, std::string>> wanted;
+    NamedNumbers wanted = parameters.study.named_numbers();
     for (const AcceptanceCriterion &criterion :
          parameters.acceptance.of_the_run())
       wanted.emplace_back(SummaryNumber(criterion.quantity),
                           "\"Quantity\" in section \"Acceptance/" +
                             criterion.name + "\"");
-    if (!parameters.study.quantities.empty())
-      for (const SummaryNumber &number : parameters.study.numbers())
-        wanted.emplace_back(number, "\"Quantities\" in section \"Study\"");
-    for (const auto &[section, criteria] :
-         {std::pair("Limit", parameters.study.criteria()),
-          std::pair("Fragility", parameters.study.fragility_criteria())})
-      for (const Criterion &criterion : criteria)
-        if (criterion.about() != nullptr)
-          wanted.emplace_back(*criterion.about(),
-                              std::string("\"Criterion\" in section "
-                                          "\"Study/") +
-                                section + "\"");
-    for (const auto &number : parameters.study.measured_numbers())
-      wanted.emplace_back(number.first,
-                          "\"Measured\" in section \"Study/Calibration\"");
-    if (wanted.empty())
-      return;
-
-    const nlohmann::json     summary = preview(run);
-    std::vector<std::string> known;
-    add_paths(summary, "", known);
-    for (const auto &[number, entry] : wanted)
-      {
-        if (number.is_in(summary))
-          continue;
-        const std::string closest = closest_match(number.path, known);
-        throw UserError(
-          entry + " names \"" + number.path +
-          "\", which the summary of this case will not have" +
-          (closest.empty() ? "" : " (did you mean \"" + closest + "\"?)") +
-          "; take a number that it has, or add the observer that "
-          "gives it.");
-      }
+    if (!wanted.empty())
+      check_numbers(wanted, preview(run));
   }
 } // namespace Voussoir

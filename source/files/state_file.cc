@@ -19,8 +19,7 @@ namespace Voussoir
   namespace
   {
     constexpr int format =
-      11; // since bars at rest follow the equilibrium alone, and laws that
-          // flow have filters of their plastic strain
+      12; // since uplift is linear along interfaces between faces that lean
 
 
     Bytes

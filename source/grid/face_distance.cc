@@ -101,4 +101,40 @@ namespace Voussoir
       }
     return nearest;
   }
+
+
+  EdgeDistance::EdgeDistance(const Grid                     &grid,
+                             const std::vector<std::string> &surface,
+                             const std::vector<std::string> &sets,
+                             const std::string              &place)
+    : to_faces(grid, sets, place)
+  {
+    for (const auto &[a, b, c, d] : gather_faces(grid, surface, place))
+      {
+        const std::array<Point<3>, 4> around{{a, b, d, c}};
+        std::array<bool, 4>           meets;
+        for (unsigned int i = 0; i < 4; ++i)
+          meets[i] = to_faces(around[i]) < 1e-6 * a.distance(d);
+        for (unsigned int i = 0; i < 4; ++i)
+          if (meets[i] && meets[(i + 1) % 4])
+            edges.push_back({{around[i], around[(i + 1) % 4]}});
+      }
+  }
+
+
+  double
+  EdgeDistance::operator()(const Point<3> &point) const
+  {
+    if (edges.empty())
+      return to_faces(point);
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const auto &[begin, end] : edges)
+      {
+        const Tensor<1, 3> along = end - begin;
+        const double       place =
+          std::clamp((point - begin) * along / along.norm_square(), 0., 1.);
+        nearest = std::min(nearest, point.distance(begin + place * along));
+      }
+    return nearest;
+  }
 } // namespace Voussoir

@@ -93,6 +93,7 @@ namespace Voussoir
         if (!elevations.empty())
           add_table(discretization, section);
         check_changes(discretization, section, log);
+        report_error_of_stress(solid, sets, section, log);
       }
 
       void
@@ -171,6 +172,66 @@ namespace Voussoir
                    " to ",
                    top,
                    " m; give elevations z in the coordinates of the mesh");
+      }
+
+      /** Logs the error of the stress in trilinear cells: their thermal strain
+       *  is linear across them, but their strain constant. At the faces of a
+       *  cell across which the temperature changes by D, the stress normal to
+       *  them errs by E a D / (2 (1 - 2 nu)). */
+      void
+      report_error_of_stress(const Solid                    &solid,
+                             const std::vector<std::string> &sets,
+                             const std::string              &section,
+                             Log                            &log) const
+      {
+        constexpr double      noteworthy     = 1e5; // [Pa]
+        const Discretization &discretization = solid.discretization;
+        if (discretization.degree > 1)
+          return;
+        Vector temperature = discretization.create_vector();
+        add_temperature(temperature);
+        temperature.update_ghost_values();
+        const auto &partitioner =
+          *discretization.matrix_free.get_vector_partitioner();
+        double difference = 0., error = 0.;
+        for_each_cell(
+          discretization,
+          sets,
+          "\"Cell sets\"" + section,
+          [&](const Discretization::Cell &cell) {
+            double low = std::numeric_limits<double>::max(), high = -low;
+            for (const auto node : discretization.cell_nodes(cell))
+              {
+                double change = 0.;
+                for (const auto &carrier : discretization.carriers(node))
+                  change += carrier.weight *
+                            temperature.local_element(
+                              partitioner.global_to_local(3 * carrier.node));
+                low  = std::min(low, change);
+                high = std::max(high, change);
+              }
+            const Material        &material = solid.material_of(cell);
+            const ElasticConstants c        = material.elastic_constants();
+            difference                      = std::max(difference, high - low);
+            error                           = std::max(error,
+                             material.static_factor * c.young_modulus *
+                               material.expansion * (high - low) /
+                               (2. * (1. - 2. * c.poisson_ratio)));
+          });
+        const MPI_Comm communicator = discretization.grid.communicator();
+        difference = Utilities::MPI::max(difference, communicator);
+        error      = Utilities::MPI::max(error, communicator);
+        if (error > noteworthy)
+          log.line(std::setprecision(2),
+                   "note: the temperature",
+                   section,
+                   " changes by up to ",
+                   difference,
+                   " K within a cell of degree 1, at whose faces the stress "
+                   "normal to them errs by up to ",
+                   1e-6 * error,
+                   " MPa; more cells through the thickness reduce this error, "
+                   "degree 2 removes most of it");
       }
 
       void

@@ -6,6 +6,7 @@
 #include <voussoir/materials/material_of.h>
 #include <voussoir/materials/softening_curve.h>
 #include <voussoir/materials/spectral.h>
+#include <voussoir/materials/tension_split.h>
 
 namespace Voussoir
 {
@@ -212,13 +213,13 @@ namespace Voussoir
       static std::vector<std::string>
       output_names()
       {
-        return {"damage"};
+        return {"damage", OutputName::largest_opening};
       }
 
       std::vector<double>
-      outputs(const double *history, const double) const
+      outputs(const double *history, const double element_length) const
       {
-        return {history[1]};
+        return {history[1], 1e3 * element_length * history[1] * history[0]};
       }
 
       std::string

@@ -111,13 +111,17 @@ namespace Voussoir
       static std::vector<std::string>
       output_names()
       {
-        return {OutputName::tension_damage, "shear damage"};
+        return {OutputName::tension_damage,
+                "shear damage",
+                OutputName::largest_opening};
       }
 
       std::vector<double>
-      outputs(const double *history, const double) const
+      outputs(const double *history, const double element_length) const
       {
-        return {damage_of(history, 0), damage_of(history, 1)};
+        return {damage_of(history, 0),
+                damage_of(history, 1),
+                1e3 * largest_opening(history, element_length)};
       }
     };
 

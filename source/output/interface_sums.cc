@@ -43,9 +43,13 @@ namespace Voussoir
       sum[locked_area] += point.area;
     else
       {
-        sum[resistance] +=
-          limits.bond +
-          (open ? 0. : limits.cohesion + limits.friction * point.mean_pressure);
+        sum[own_cohesion] += limits.bond + (open ? 0. : limits.cohesion);
+        if (!open)
+          {
+            sum[own_pressure] += point.mean_pressure;
+            sum[own_friction] += limits.friction * point.mean_pressure;
+          }
+        sum[own_tension] += std::max(-F[0], 0.);
         for (unsigned int d = 0; d < 3; ++d)
           sum[driving_x + d] += global[d] - F[0] * point.frame[0][d];
       }
@@ -66,13 +70,18 @@ namespace Voussoir
   std::array<double, n_surface_columns>
   surface_values(const double *sum, const double *largest, const double area)
   {
-    // Safety of the plane as a whole, (c A + mu N) / T. Infinite without shear
-    // or with nearly none, as in an open joint without keys, or one whose keys
-    // prevent slip.
+    // Safety of the plane as a whole, (c A + mu N) / T, where tension of the
+    // bond reduces N. Infinite without shear or with nearly none, as in an open
+    // joint without keys, or one whose keys prevent slip.
+    const double friction_of_plane =
+      sum[own_pressure] > sum[own_tension] ?
+        sum[own_friction] * (1. - sum[own_tension] / sum[own_pressure]) :
+        0.;
+    const double       resistance = sum[own_cohesion] + friction_of_plane;
     const Tensor<1, 3> shear({sum[shear_x], sum[shear_y], sum[shear_z]}),
       driving({sum[driving_x], sum[driving_y], sum[driving_z]});
-    const double safety = driving.norm() > 1e-6 * sum[resistance] ?
-                            sum[resistance] / driving.norm() :
+    const double safety = driving.norm() > 1e-6 * resistance ?
+                            resistance / driving.norm() :
                             std::numeric_limits<double>::infinity();
     return {{1e3 * largest[0],
              1e3 * sum[opening] / area,

@@ -13,6 +13,11 @@ namespace Voussoir
   {
     if (interval < 1.001 * resolving_interval())
       return;
+    // two digits, rounded down
+    const double unit =
+      std::pow(10., std::floor(std::log10(resolving_interval())) - 1.);
+    const double largest =
+      unit * std::floor(resolving_interval() / unit * (1. + 1e-9));
     std::ostringstream text;
     text << std::setprecision(2) << place << " is " << interval
          << " s, at which extremes of oscillations at the " << carried_frequency
@@ -20,7 +25,7 @@ namespace Voussoir
          << 100. * (1. - std::cos(std::min(dealii::numbers::PI * interval *
                                              carried_frequency,
                                            dealii::numbers::PI_2)))
-         << " %; set it to " << resolving_interval() << " s or less";
+         << " %; set it to " << largest << " s or less";
     log.warn(text.str());
   }
 

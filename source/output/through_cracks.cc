@@ -82,9 +82,11 @@ namespace Voussoir
                            return reports_cracks(*material);
                          }))
           throw UserError(
-            "No material of the case cracks, but " + cracks_section +
+            "No material of the case has a law that reports openings of "
+            "cracks, as concrete damage does, but " +
+            cracks_section +
             " records cracks; remove the observer \"through cracks\", or "
-            "give a material a law that cracks.");
+            "give a material such a law.");
       }
 
       void

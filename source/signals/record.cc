@@ -254,19 +254,21 @@ namespace Voussoir
       return series;
     }
 
-    /** The constant step of the time column, the first of each row. */
+    /** The constant step of the time column, the first of each row. Times may
+     *  be rounded: each step may differ by a fifth from the usual one, and each
+     *  time by a fifth of a step from its place at equal steps. */
     double
     uniform_step(const std::string                      &file,
                  const std::vector<Line>                &lines,
                  const std::size_t                       first_line,
                  const std::vector<std::vector<double>> &rows)
     {
-      const double mean_step =
-        (rows.back()[0] - rows.front()[0]) / (rows.size() - 1);
+      constexpr double    rounding = 0.2; // of a step
+      std::vector<double> steps;
       for (std::size_t i = 1; i < rows.size(); ++i)
         {
-          const double step = rows[i][0] - rows[i - 1][0];
-          if (step <= 0)
+          steps.push_back(rows[i][0] - rows[i - 1][0]);
+          if (!(steps.back() > 0.))
             refuse(file,
                    lines[first_line + i],
                    "the first of " + std::to_string(rows[i].size()) +
@@ -274,15 +276,31 @@ namespace Voussoir
                      "the rows and remove repeated ones, or, if these are "
                      "accelerations alone, write one in each row with the "
                      "entry Time step, or give the header with NPTS and DT");
-          const double first_step = rows[1][0] - rows[0][0];
-          if (std::abs(step - first_step) > 1e-3 * first_step)
+        }
+      std::vector<double> sorted = steps;
+      const auto          middle = sorted.begin() + sorted.size() / 2;
+      std::nth_element(sorted.begin(), middle, sorted.end());
+      const double usual = *middle, mean = (rows.back()[0] - rows.front()[0]) /
+                                           double(steps.size());
+      for (std::size_t i = 1; i < rows.size(); ++i)
+        {
+          const double step = steps[i - 1];
+          if (std::abs(step - usual) > rounding * usual)
             refuse(file,
                    lines[first_line + i],
                    "the time step " + std::to_string(step) +
-                     " s differs from the " + std::to_string(first_step) +
-                     " s at the start; fill the gap or resample the record");
+                     " s differs from the usual " + std::to_string(usual) +
+                     " s; fill the gap or resample the record");
         }
-      return mean_step;
+      for (std::size_t i = 1; i < rows.size(); ++i)
+        if (const double equal = rows.front()[0] + double(i) * mean;
+            std::abs(rows[i][0] - equal) > rounding * mean)
+          refuse(file,
+                 lines[first_line + i],
+                 "the time " + std::to_string(rows[i][0]) + " s would be " +
+                   std::to_string(equal) +
+                   " s at equal steps; resample the record at equal steps");
+      return mean;
     }
 
     TimeSeries

@@ -13,7 +13,8 @@ namespace Voussoir
     /**
      * The sliding safety that the observer "interfaces" reports for a block at
      * rest on an incline: (c A + f W cos) / (W sin), also where the block is
-     * warmer than its base, so that shear in all directions cancels.
+     * warmer than its base, so that shear in all directions cancels, and where
+     * a moment pulls at the bond of one side.
      */
     class Safety : public Check
     {
@@ -56,6 +57,27 @@ namespace Voussoir
                   (weight * along),
                 0.01);
           }
+        const double slope = 0.9 * friction, cohesion = 5e3,
+                     angle = std::atan(slope);
+        for (const std::string law : {"softening bond", "brittle bond"})
+          verdicts.near(
+            "bond that a moment pulls at, " + law + ": safety",
+            reported(file.with(
+                       {vector_entry("Loads/weight/Acceleration",
+                                     9.81 * Tensor<1, 3>({std::sin(angle),
+                                                          0.,
+                                                          -std::cos(angle)})),
+                        "Interfaces/plane/Law=" + law,
+                        "Interfaces/plane/Tensile strength=1e6",
+                        "Interfaces/plane/Cohesion=" + std::to_string(cohesion),
+                        "Loads/warmth/Active=false",
+                        "Loads/up/Active=true",
+                        "Loads/down/Active=true",
+                        "Static state/Stages=weight, up, down"}),
+                     communicator),
+            (cohesion * area + friction * weight * std::cos(angle)) /
+              (weight * std::sin(angle)),
+            0.01);
       }
 
     private:

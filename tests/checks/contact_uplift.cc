@@ -118,6 +118,35 @@ namespace Voussoir
       Tensor<1, 2> heads{{1., 0.}}, drains{{0.25, 0.5}};
     };
 
+    /** A lift joint of a section whose faces lean: the head is linear along
+     *  the joint. */
+    class UpliftOfSection : public Check
+    {
+    public:
+      void
+      declare_parameters(ParameterHandler &prm) override
+      {
+        prm.add_parameter("Head", head, "At the upstream end [m].");
+      }
+
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm       communicator) override
+      {
+        const auto parameters  = make_case(file);
+        const auto simulation  = make_simulation(*parameters, communicator);
+        const ContactSums sums = contact_sums(*simulation, 0);
+        verdicts.near("resultant of the uplift [MN]",
+                      1e-6 * sums.given,
+                      1e-6 * 0.5 * 1000. * 9.81 * head * sums.area,
+                      1e-6);
+      }
+
+    private:
+      double head = 1.;
+    };
+
     /**
      * A block that the water in its joint lifts, unless the water on its top
      * presses it down: the uplift must not act before the reservoir.
@@ -171,6 +200,11 @@ namespace Voussoir
     const Registry<Check>::Add<UpliftByStage>
       registered_by_stage("contact uplift by stage",
                           "Uplift that comes with the reservoir.");
+
+    // Reference: closed form
+    const Registry<Check>::Add<UpliftOfSection>
+      registered_of_section("contact uplift of a section",
+                            "Uplift between faces that lean.");
 
     // Reference: closed form
     const Registry<Check>::Add<Uplift>

@@ -4,6 +4,8 @@
 #include <voussoir/signals/response_spectrum.h>
 
 #include <fstream>
+#include <iomanip>
+#include <sstream>
 
 #include "check.h"
 
@@ -63,6 +65,16 @@ namespace Voussoir
                        std::abs(table.values[2] - 0.3) < 1e-15 &&
                          std::abs(table.time_step - 0.01) < 1e-15);
 
+      std::ostringstream rounded;
+      rounded << std::fixed << std::setprecision(4);
+      for (unsigned int i = 0; i <= 1280; ++i)
+        rounded << i / 128. << ' ' << i % 7 << '\n';
+      verdicts.near("step of times of 1/128 s with four decimals",
+                    read_text(rounded.str()).time_step,
+                    1. / 128.,
+                    1e-6,
+                    "s");
+
       const std::string header = "NPTS= 3, DT= .02 SEC\n";
       for (const auto &[what, text] : std::map<std::string, std::string>{
              {"no number", "one\ntwo\n"},
@@ -71,7 +83,7 @@ namespace Voussoir
              {"no time step", "NPTS= 3\n1 2 3\n"},
              {"a velocity",
               "VELOCITY TIME SERIES IN UNITS OF CM/S\n" + header + "1 2 3\n"},
-             {"uneven times", "0 1\n.01 1\n.02002 1\n"},
+             {"uneven times", "0 1\n.01 1\n.023 1\n"},
              {"falling times", "0 1\n.01 1\n.005 1\n"},
              {"a missing column", "0 1\n.01 1\n.02\n"}})
         verdicts.is_true("refused: " + what, is_refused(text));

@@ -105,6 +105,23 @@ namespace Voussoir
           "of its own: no note",
           make_case(file.with({vertical + "Shape=hydropower code", period}))
             ->notes.empty());
+
+        const std::string azimuth = "Wave field/Azimuth=30";
+        verdicts.same_text("azimuth of a vertical wave",
+                           only_note(file.with({azimuth})),
+                           "\"Azimuth\" in section \"Wave field\" is not used, "
+                           "as \"Type\" there is \"vertical\"");
+        verdicts.is_true("of an oblique wave: no note",
+                         make_case(
+                           file.with({"Wave field/Type=oblique SH", azimuth}))
+                           ->notes.empty());
+        verdicts.same_text(
+          "place of a motion that moves a rigid base",
+          only_note(file.with({"Wave field/Enters through=rigid base",
+                               "Ground motion/Given at=outcrop"})),
+          "\"Given at\" in section \"Ground motion\" is not used, as \"Enters "
+          "through\" in section \"Wave field\" is \"rigid base\", which moves "
+          "as given");
       }
 
     private:

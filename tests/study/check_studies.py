@@ -66,6 +66,14 @@ def check_ends(scratch):
             and " 0 were stopped" not in said.splitlines()[-1], said)
 
 
+def check_misspelt_number(scratch):
+    name = "histories/nowhere/largest displacement [m]"
+    code, said = study(cases / "study_columns.prm", scratch / "misspelt", "Study/Fragility/Intensity=Materials/stone/Density",
+                       f"Study/Fragility/Criterion={name} > 1")
+    is_true("a fragility curve of a number that there is not: stopped after the first run",
+            code == 1 and name in said and said.count(", about ") == 1, said)
+
+
 def check_validation(scratch):
     code, said = study(cases / "study_slope.prm", scratch / "valid", "Ground motion/Spectrum/Periods=0.1, 1",
                        options=("--validate",))
@@ -144,7 +152,7 @@ def check_two_at_once(scratch):
 
 
 with tempfile.TemporaryDirectory() as name:
-    for check in (check_ends, check_validation, check_notes, check_files, check_two_at_once):
+    for check in (check_ends, check_misspelt_number, check_validation, check_notes, check_files, check_two_at_once):
         place = pathlib.Path(name).resolve() / check.__name__
         place.mkdir()
         check(place)

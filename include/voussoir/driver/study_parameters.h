@@ -104,6 +104,10 @@ namespace Voussoir
     std::vector<std::pair<SummaryNumber, double>>
     measured_numbers() const;
 
+    /** Numbers that entries name. */
+    NamedNumbers
+    named_numbers() const;
+
   private:
     void
     declare_limit(dealii::ParameterHandler &prm);

@@ -59,6 +59,13 @@ namespace Voussoir
     std::vector<std::string> names; // along the path
   };
 
+  /** Numbers with the entries that name them, as the texts of errors do. */
+  using NamedNumbers = std::vector<std::pair<SummaryNumber, std::string>>;
+
+  /** Throws UserError, which names the entry, if a summary lacks a number. */
+  void
+  check_numbers(const NamedNumbers &wanted, const nlohmann::json &summary);
+
   /** Whether a name matches a pattern, in which a star stands for any letters.
    */
   bool

@@ -42,6 +42,31 @@ namespace Voussoir
     /** Boxes around the faces, with their numbers. */
     dealii::RTree<std::pair<dealii::BoundingBox<3>, unsigned int>> boxes;
   };
+
+  /**
+   * Distance of points of a surface to some face sets within the surface: to
+   * the edges at which it meets them, and to the nearest face of the sets if it
+   * does not meet them. A face that leans towards the surface is nearer to its
+   * points than its edge.
+   */
+  class EdgeDistance
+  {
+  public:
+    /** @param surface face sets of the surface
+     *  @param sets each checked; @p place names their entry */
+    EdgeDistance(const Grid                     &grid,
+                 const std::vector<std::string> &surface,
+                 const std::vector<std::string> &sets,
+                 const std::string              &place);
+
+    /** [m] */
+    double
+    operator()(const dealii::Point<3> &point) const;
+
+  private:
+    FaceDistance                                 to_faces;
+    std::vector<std::array<dealii::Point<3>, 2>> edges;
+  };
 } // namespace Voussoir
 
 #endif

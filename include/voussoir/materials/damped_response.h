@@ -72,7 +72,8 @@ namespace Voussoir
    * - (s_a + s_b) n . B du . n / 2 on the viscosity of closing, all of it lost.
    * - (sigma_a + sigma_b) : (B du - de)/2 on damping. Of this work, summed up
    *   since the static state, damping stores
-   *     (1/k_r - 1) sigma : e_e / 2
+   *     (1/k_r - 1) sigma : e_e / 2, from the static state sigma_s, e_e,s on
+   *       (1/k_r - 1) [ sigma : e_e / 2 - sigma_s : (e_e - e_e,s / 2) ],
    *     + r^4 [ k (1 + 1/(s sum D_i)) w : D : w / 2 - sigma : w + j ] .
    *   Here j is the imbalance of the branches, the energy that they store above
    *   the least one for their sum w, k w : D : w / (2 s sum D_i). A point
@@ -402,11 +403,15 @@ namespace Voussoir
                     then.plastic.access_raw_entry(i)[lane];
                 }
         }
-      const Lanes of_law =
-        0.5 * (point.stress * (point.law_strain - point.plastic)) -
+      const SymmetricTensor3<Lanes> elastic = point.law_strain - point.plastic;
+      const Lanes                   of_law =
+        0.5 * (point.stress * elastic) -
         stress_then * (0.5 * elastic_then + point.law_strain - law_strain_then);
+      // without the work of the forces of the static state on plastic flow
+      const Lanes of_elastic = 0.5 * (point.stress * elastic) -
+                               stress_then * (elastic - 0.5 * elastic_then);
       const Lanes damping_energy =
-        (1. / modulus(point.share) - 1.) * of_law +
+        (1. / modulus(point.share) - 1.) * of_elastic +
         filter_energy(point.filter,
                       point.stress - stress_then,
                       Law::flows ? history.imbalance(batch, q) :

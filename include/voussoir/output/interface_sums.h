@@ -18,8 +18,11 @@ namespace Voussoir
       shear_x,      // resultant, in global directions [N]
       shear_y,
       shear_z,
-      resistance, // cohesion and friction of points without keys [N]
-      driving_x,  // shear of points without keys, resultant [N]
+      own_cohesion, // of points without keys, with the bond [N]
+      own_pressure, // of these points, by which friction goes [N]
+      own_friction, // that it gives [N]
+      own_tension,  // carried by the bond of these points [N]
+      driving_x,    // shear of these points, resultant [N]
       driving_y,
       driving_z,
       locked_area, // where keys prevent slip [m2]

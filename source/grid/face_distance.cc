@@ -109,12 +109,17 @@ namespace Voussoir
                              const std::string              &place)
     : to_faces(grid, sets, place)
   {
-    for (const auto &[a, b, c, d] : gather_faces(grid, surface, place))
+    const std::vector<FaceCorners> of_surface =
+      gather_faces(grid, surface, place);
+    touching = std::numeric_limits<double>::infinity();
+    for (const FaceCorners &corners : of_surface)
+      touching = std::min(touching, 1e-6 * corners[0].distance(corners[3]));
+    for (const auto &[a, b, c, d] : of_surface)
       {
         const std::array<Point<3>, 4> around{{a, b, d, c}};
         std::array<bool, 4>           meets;
         for (unsigned int i = 0; i < 4; ++i)
-          meets[i] = to_faces(around[i]) < 1e-6 * a.distance(d);
+          meets[i] = to_faces(around[i]) < touching;
         for (unsigned int i = 0; i < 4; ++i)
           if (meets[i] && meets[(i + 1) % 4])
             edges.push_back({{around[i], around[(i + 1) % 4]}});
@@ -125,9 +130,10 @@ namespace Voussoir
   double
   EdgeDistance::operator()(const Point<3> &point) const
   {
-    if (edges.empty())
-      return to_faces(point);
-    double nearest = std::numeric_limits<double>::infinity();
+    double nearest = to_faces(point);
+    if (edges.empty() || nearest < touching)
+      return nearest;
+    nearest = std::numeric_limits<double>::infinity();
     for (const auto &[begin, end] : edges)
       {
         const Tensor<1, 3> along = end - begin;

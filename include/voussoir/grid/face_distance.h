@@ -46,8 +46,8 @@ namespace Voussoir
   /**
    * Distance of points of a surface to some face sets within the surface: to
    * the edges at which it meets them, and to the nearest face of the sets if it
-   * does not meet them. A face that leans towards the surface is nearer to its
-   * points than its edge.
+   * does not meet them; zero where it is one of their faces. A face that leans
+   * towards the surface is nearer to its points than its edge.
    */
   class EdgeDistance
   {
@@ -66,6 +66,7 @@ namespace Voussoir
   private:
     FaceDistance                                 to_faces;
     std::vector<std::array<dealii::Point<3>, 2>> edges;
+    double                                       touching; // closer: zero [m]
   };
 } // namespace Voussoir
 

@@ -62,7 +62,7 @@ for shift, name, folder in ((-0.2, "MDE, 406 gal", design), (0.2, "1.5 times MDE
     stays = surfaces(folder)
     residual.bar([i + shift for i in range(len(PLANES))],
                  [stays[plane]["residual slip [mm]"] for plane in PLANES], 0.4, label=name)
-residual.set_xticks(range(len(PLANES)), [plane.replace(" wedge ", "\n") for plane in PLANES])
+residual.set_xticks(range(len(PLANES)), [plane.replace(" wedge", "").replace(" ", "\n") for plane in PLANES])
 residual.set(ylabel="largest residual slip [mm]", title="residual slip")
 residual.legend(fontsize=8)
 

@@ -163,10 +163,12 @@ namespace Voussoir
         {
           const std::string place =
             "in section \"Interfaces/" + interfaces.list[i].name + "/Uplift\"";
-          std::vector<std::string> surface;
+          std::vector<std::string> own;
           for (unsigned int s = 0; s < names.size(); ++s)
             if (interface_of_surface[s] == i)
-              surface.push_back(names[s]);
+              own.push_back(names[s]);
+          const std::vector<FaceCorners> surface =
+            gather_faces(discretization.grid, own, place);
           const EdgeDistance upstream(discretization.grid,
                                       surface,
                                       split_list(water.upstream_faces),

@@ -114,18 +114,29 @@ namespace Voussoir
     }
 
 
+    /** Notes an entry, by its path, which the file gives but does not use. */
+    void
+    note_if_given(Case              &parameters,
+                  const std::string &path,
+                  const std::string &cause)
+    {
+      if (!parameters.file.given(path).empty())
+        parameters.notes.push_back("\"" + entry_of(path) + "\" in section \"" +
+                                   section_of(path) + "\" is not used, as " +
+                                   cause);
+    }
+
+
     void
     note_unused_crack_friction(Case &parameters)
     {
       parameters.materials.for_each(
         [&parameters](const std::string &place, Material &) {
-          const ParameterFile &file = parameters.file;
-          if (!file.given(place + "/Crack friction").empty() &&
-              file.given(place + "/Crack direction", "rotating") == "rotating")
-            parameters.notes.push_back(
-              "\"Crack friction\" in section \"" + place +
-              "\" is not used, as \"Crack direction\" there is "
-              "\"rotating\"");
+          if (parameters.file.given(place + "/Crack direction", "rotating") ==
+              "rotating")
+            note_if_given(parameters,
+                          place + "/Crack friction",
+                          "\"Crack direction\" there is \"rotating\"");
         });
     }
 
@@ -149,46 +160,34 @@ namespace Voussoir
                 {"Decay exponent", code},
                 {"Periods", "table"},
                 {"Amplifications", "table"}})
-            if (shape != own_shape &&
-                !parameters.file.given(section + "/" + entry).empty())
-              parameters.notes.push_back("\"" + entry + "\" in section \"" +
-                                         section +
-                                         "\" is not used, as \"Shape\" there "
-                                         "is \"" +
-                                         shape + "\"");
+            if (shape != own_shape)
+              note_if_given(parameters,
+                            section + "/" + entry,
+                            "\"Shape\" there is \"" + shape + "\"");
         }
     }
 
 
-    /** Notes entries of waves that a rigid base or a vertical wave does not
-     * use.
+    /** Notes entries of waves that a rigid base or a vertical wave leaves out.
      */
     void
     note_unused_wave(Case &parameters)
     {
-      const WaveParameters     &wave = parameters.wave;
-      std::vector<const char *> entries;
-      std::string               cause;
+      const WaveParameters &wave = parameters.wave;
       if (wave.enters_through == WaveEntrance::rigid_base)
-        {
-          entries = {"Wave field/Type",
-                     "Wave field/Angle",
-                     "Wave field/Azimuth",
-                     "Wave field/Maximum frequency",
-                     "Ground motion/Given at"};
-          cause   = "\"Enters through\" in section \"Wave field\" is \"rigid "
-                    "base\", which moves as given";
-        }
+        for (const char *const path : {"Wave field/Type",
+                                       "Wave field/Angle",
+                                       "Wave field/Azimuth",
+                                       "Wave field/Maximum frequency",
+                                       "Ground motion/Given at"})
+          note_if_given(parameters,
+                        path,
+                        "\"Enters through\" in section \"Wave field\" is "
+                        "\"rigid base\", which moves as given");
       else if (wave.type == WaveType::vertical)
-        {
-          entries = {"Wave field/Angle", "Wave field/Azimuth"};
-          cause   = "\"Type\" there is \"vertical\"";
-        }
-      for (const std::string entry : entries)
-        if (!parameters.file.given(entry).empty())
-          parameters.notes.push_back("\"" + entry_of(entry) +
-                                     "\" in section \"" + section_of(entry) +
-                                     "\" is not used, as " + cause);
+        for (const char *const path :
+             {"Wave field/Angle", "Wave field/Azimuth"})
+          note_if_given(parameters, path, "\"Type\" there is \"vertical\"");
     }
   } // namespace
 

@@ -504,8 +504,7 @@ namespace Voussoir
          << run.times.n_steps(run.state.step) << " steps in "
          << duration_text(summary.march->loop_time) << ", "
          << summary.march->throughput
-         << " MDOF-steps/s, energy-balance error at "
-            "the end "
+         << " MDOF-steps/s, energy-balance error at the end "
          << 100. * summary.march->energy.error_of_input << " %\n";
     if (run.contact)
       text << "Contact: " << 100. * summary.march->contact_share.value_or(0.)

@@ -488,10 +488,10 @@ namespace Voussoir
     if (!quantities.empty())
       for (const SummaryNumber &number : numbers())
         result.emplace_back(number, "\"Quantities\" in section \"Study\"");
-    for (const auto &[section, criteria] :
-         {std::pair("Limit", this->criteria()),
+    for (const auto &[section, of_section] :
+         {std::pair("Limit", criteria()),
           std::pair("Fragility", fragility_criteria())})
-      for (const Criterion &criterion : criteria)
+      for (const Criterion &criterion : of_section)
         if (criterion.about() != nullptr)
           result.emplace_back(*criterion.about(),
                               std::string("\"Criterion\" in section "

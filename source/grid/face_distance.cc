@@ -104,17 +104,15 @@ namespace Voussoir
 
 
   EdgeDistance::EdgeDistance(const Grid                     &grid,
-                             const std::vector<std::string> &surface,
+                             const std::vector<FaceCorners> &surface,
                              const std::vector<std::string> &sets,
                              const std::string              &place)
     : to_faces(grid, sets, place)
+    , touching(std::numeric_limits<double>::infinity())
   {
-    const std::vector<FaceCorners> of_surface =
-      gather_faces(grid, surface, place);
-    touching = std::numeric_limits<double>::infinity();
-    for (const FaceCorners &corners : of_surface)
+    for (const FaceCorners &corners : surface)
       touching = std::min(touching, 1e-6 * corners[0].distance(corners[3]));
-    for (const auto &[a, b, c, d] : of_surface)
+    for (const auto &[a, b, c, d] : surface)
       {
         const std::array<Point<3>, 4> around{{a, b, d, c}};
         std::array<bool, 4>           meets;
@@ -130,10 +128,10 @@ namespace Voussoir
   double
   EdgeDistance::operator()(const Point<3> &point) const
   {
-    double nearest = to_faces(point);
-    if (edges.empty() || nearest < touching)
-      return nearest;
-    nearest = std::numeric_limits<double>::infinity();
+    const double to_nearest_face = to_faces(point);
+    if (edges.empty() || to_nearest_face < touching)
+      return to_nearest_face;
+    double nearest = std::numeric_limits<double>::infinity();
     for (const auto &[begin, end] : edges)
       {
         const Tensor<1, 3> along = end - begin;

@@ -52,10 +52,10 @@ namespace Voussoir
   class EdgeDistance
   {
   public:
-    /** @param surface face sets of the surface
+    /** @param surface its faces on all ranks
      *  @param sets each checked; @p place names their entry */
     EdgeDistance(const Grid                     &grid,
-                 const std::vector<std::string> &surface,
+                 const std::vector<FaceCorners> &surface,
                  const std::vector<std::string> &sets,
                  const std::string              &place);
 
